@@ -22,7 +22,7 @@ HWY_INLINE Lane cos_of_root(Lane q) {
   return max(Lane(hn::Cos(D(), angle.raw)), Lane(0.0));
 }
 
-// c = m 2^n, m in [2/3, 4/3), from the bits: subtracting those of 2/3 leaves n above the mantissa.
+// Splits c = m 2^n, m in [2/3, 4/3), by its bits: subtracting those of 2/3 leaves n above the mantissa.
 struct SplitLane {
   Lane exponent, mantissa;
 };
@@ -58,7 +58,7 @@ HWY_INLINE Lane short_exp2(Lane x) {
   return scale_by_power_of_two(NearExact::exp2_near_zero_short(f), whole);
 }
 
-// (1 - V)^((e - 1) / 2), e = 1/V, by the near-exact power.
+// Returns (1 - V)^((e - 1) / 2), e = 1/V, by the near-exact power.
 HWY_INLINE Lane power_at_inflection(Lane inverse) {
   const Lane k = (Lane(1.0) / inverse - Lane(1.0)) * Lane(0.5);
   return NearExact::value(Cosine<Lane>{Lane(1.0) - inverse, inverse}, &k);

@@ -55,13 +55,13 @@ HWY_INLINE Ints to_int(Reals a) {
 HWY_INLINE Reals to_real(Ints a) {
   return Reals(hn::ConvertTo(D(), a.raw));
 }
-/// b at a + 1, 0 at a == last.
+/// Returns a + 1, or 0 for a == last.
 HWY_INLINE Ints next_around(Ints a, int last) {
   const auto next = hn::Add(a.raw, hn::Set(DI(), 1));
   return Ints(hn::IfThenElseZero(hn::Lt(a.raw, hn::Set(DI(), last)), next));
 }
 
-// Entries i and i + 1 in the halves of 32 bits.
+// Gathers entries i and i + 1 into the halves of 32 bits.
 HWY_INLINE hn::Vec<DI> gather_two(const std::uint16_t* table, Ints i) {
   return hn::GatherOffset(DI(), reinterpret_cast<const std::int32_t*>(table), hn::Add(i.raw, i.raw));
 }
@@ -75,7 +75,7 @@ HWY_INLINE EdgePairs edge_pair(const std::uint16_t* table, Ints i) {
   return {Ints(hn::And(two, low)), Ints(hn::And(hn::Sub(high, two), low))};
 }
 
-// By halves: each step asks for one edge a lane.
+// Searches by halves: each step reads one edge a lane.
 template <int kSlices>
 HWY_INLINE Ints search(const std::uint16_t* table, const Ints (&start)[kSlices],
                        const Reals (&weight)[kSlices], int count, Reals target) {

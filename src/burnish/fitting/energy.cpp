@@ -33,8 +33,8 @@ struct Grid {
   }
   double phi(std::size_t j) const { return kTwoPi * static_cast<double>(j) / static_cast<double>(phis); }
   Vec3 direction(std::size_t k) const { return spherical_direction(theta(k / phis), phi(k % phis)); }
-  // Linear in what theta() is a function of and in the azimuth; values beyond the last polar angle are its
-  // own.
+  // Interpolates linearly in the index that theta() maps from and in the azimuth. Beyond the last polar angle, its
+  // values hold.
   double interpolate(const std::vector<double>& values, Vec3 w, std::size_t channel) const {
     const double share = std::clamp(1 - theta_of(w) / kMaxTheta, 0.0, 1.0);
     const double y = (1 - std::pow(share, 1 / 1.5)) * static_cast<double>(thetas - 1);
@@ -50,12 +50,12 @@ struct Grid {
   }
 };
 
-// Fills in the albedos of the chosen directions, a row of channels for each of the grid.
+// Updates the albedos of the chosen directions, a row of channels for each direction of the grid.
 void update_albedos(const FactoredBrdf& brdf, const Grid& grid, double tolerance,
                     const std::vector<bool>& chosen, std::vector<double>& albedo) {
   const auto row = [&](std::size_t k) { return std::span(albedo).subspan(k * grid.channels, grid.channels); };
   for_each_chunk(grid.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
-    const bool another_normal = k > 0 && k < grid.phis;  // which has one albedo, whatever the azimuth
+    const bool another_normal = k > 0 && k < grid.phis;  // the normal has one albedo for all azimuths
     if (!another_normal && chosen[k])
       std::ranges::copy(directional_albedo(brdf, grid.direction(k), tolerance).albedo, row(k).begin());
   });
@@ -76,7 +76,7 @@ std::vector<double> largest_of(const std::vector<double>& albedo, std::size_t ch
   return largest;
 }
 
-// The first table that a lobe looks up by both directions alike, and by nothing else.
+// Returns the first table that a lobe looks up by both directions alike, and by nothing else.
 std::optional<std::size_t> damping_table(const FactoredBrdf& brdf, const Lobe& lobe) {
   for (const FactorUse& use : lobe.factors) {
     if (projection_count(brdf.table_of(use).layout.shape) > 1) continue;
@@ -101,7 +101,7 @@ class Damper {
 
   bool damps(const Lobe& lobe) const { return damped_uses(lobe) > 0; }
 
-  // The lobes that no gain reaches; others are made black.
+  // Returns the model of the lobes that no gain reaches; all others are made black.
   FactoredBrdf rest() const {
     std::vector<Lobe> lobes(brdf_.lobes().begin(), brdf_.lobes().end());
     for (Lobe& lobe : lobes)
@@ -109,13 +109,13 @@ class Damper {
     return FactoredBrdf(brdf_.channels(), {brdf_.tables().begin(), brdf_.tables().end()}, std::move(lobes));
   }
 
-  // Steps towards albedo 1 where it is above, and back towards gain 1 where it is below. Returns the largest
-  // change of a gain, relative.
+  // Takes a Sinkhorn step [SinkhornKnopp1967]: towards albedo 1 where it is above, and back towards gain 1 where it
+  // is below. Returns the largest relative change of a gain.
   double step(const std::vector<double>& albedo, const std::vector<double>& rest) {
     std::vector<double> change(albedo.size(), 1.0);
     for (std::size_t i = 0; i < albedo.size(); ++i) {
       const double damped = albedo[i] - rest[i], room = std::max(kLimit - rest[i], 0.0);
-      // both directions of a pair take their part
+      // Both directions of a pair are damped, so each takes a root of the change.
       if (damped > 0) change[i] = std::pow(room / damped, 1 / static_cast<double>(most_uses_));
     }
     double largest = 0;
@@ -131,7 +131,7 @@ class Damper {
     return largest;
   }
 
-  // The damped tables times the gains, unrounded.
+  // Returns the damped tables times the gains, unrounded.
   FactoredBrdf apply(std::span<const Lobe> lobes) const {
     std::vector<Table> tables(brdf_.tables().begin(), brdf_.tables().end());
     for (std::size_t t = 0; t < tables.size(); ++t) {
@@ -143,7 +143,7 @@ class Damper {
     return FactoredBrdf(brdf_.channels(), std::move(tables), {lobes.begin(), lobes.end()});
   }
 
-  // The same in the tables' formats.
+  // Returns the same in the tables' formats; the scales take what storing divides out.
   FactoredBrdf store(std::span<const Lobe> lobes) const {
     std::vector<Table> tables(brdf_.tables().begin(), brdf_.tables().end());
     std::vector<Lobe> scaled(lobes.begin(), lobes.end());
@@ -168,8 +168,9 @@ class Damper {
                                  [&](const FactorUse& use) { return !gains_[use.table].empty(); });
   }
 
-  // What changes of the grid mean for a table's nodes: each takes the least of those its interpolation
-  // reaches, damping by its share in them; so no direction stays above 1 because its nodes look elsewhere.
+  // Returns the changes of a table's nodes that changes of the grid ask for. Each node takes the least of those that
+  // its interpolation reaches, damping by its share in them. So no direction stays above 1 because its nodes look
+  // elsewhere.
   std::vector<double> node_changes(const Table& table, const std::vector<double>& change) const {
     const auto step = table.channels;
     std::vector<double> result(table.values.size(), std::numeric_limits<double>::infinity());
@@ -207,7 +208,7 @@ class Damper {
   std::ptrdiff_t most_uses_ = 1;
 };
 
-// Divides the scales of the chosen lobes by what exceeds 1.
+// Divides the scales of the chosen lobes by the largest albedo where that exceeds 1.
 template <class Chosen>
 void limit_scales(std::vector<Lobe>& lobes, const std::vector<double>& largest, const Chosen& chosen) {
   for (Lobe& lobe : lobes)
@@ -239,7 +240,7 @@ EnergyConservation conserve_energy(const FactoredBrdf& brdf, const EnergyOptions
   result.largest_after = result.largest_before;
   if (within_one(result.largest_before)) return result;
 
-  // lobes that no gain reaches, scaled until they alone are within 1
+  // Lobes that no gain reaches are scaled until they alone are within 1.
   Damper damper(brdf, grid);
   std::vector<Lobe> lobes(brdf.lobes().begin(), brdf.lobes().end());
   std::vector<double> rest = albedos_of(damper.rest());
@@ -247,14 +248,14 @@ EnergyConservation conserve_energy(const FactoredBrdf& brdf, const EnergyOptions
   limit_scales(lobes, largest_rest, [&](const Lobe& lobe) { return !damper.damps(lobe); });
   for (std::size_t i = 0; i < rest.size(); ++i) rest[i] /= std::max(largest_rest[i % channels], 1.0);
 
-  // the gains of the others; as they are at most 1, an albedo that is at most 1 without them stays so
+  // The gains of the others are iterated. As gains are at most 1, an albedo that is at most 1 without them stays so.
   const std::vector<bool> above = directions_above_one(albedo, channels);
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     update_albedos(damper.apply(lobes), grid, options.tolerance, above, albedo);
     if (damper.step(albedo, rest) < options.tolerance) break;
   }
 
-  // what rounding left above 1
+  // Rounding may leave an albedo above 1: then all lobes are scaled.
   const FactoredBrdf stored = damper.store(lobes);
   result.largest_after = largest_of(albedos_of(stored), channels);
   lobes = {stored.lobes().begin(), stored.lobes().end()};

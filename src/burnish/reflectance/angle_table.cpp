@@ -13,8 +13,8 @@ namespace {
 /// Radians by which rounding may miss the end of an axis.
 constexpr double kSlack = 1e-9;
 
-/// What of the weights has to be known. A direction meant to be at a node misses it by rounding, which must not make the
-/// hole there the value of the next node.
+/// The least share of the weights that has to be known. A direction meant to be at a node misses it by rounding,
+/// which must not make the hole there the value of the next node.
 constexpr double kMinKnown = 1e-9;
 
 /// The mirror direction of the light, the direction from it to the normal, and the one that completes them.
@@ -44,10 +44,10 @@ AxisNeighbours neighbours(const AngleAxis& axis, double angle) noexcept {
   const double half_step = 0.5 * (nodes[last] - nodes[last - 1]);
   if (axis.period > 0) {
     angle -= axis.period * std::floor((angle - nodes[0]) / axis.period);
-    // half a step in front of the first node is closer to it than to the last.
+    // Half a step in front of the first node is closer to it than to the last.
     if (!axis.closed && angle > nodes[last] + half_step + kSlack) angle -= axis.period;
   }
-  // beyond the last node, before the first, between two
+  // The angle lies beyond the last node, before the first, or between two. Outside, it is known up to half a step.
   if (angle > nodes[last]) {
     if (axis.closed) return {{last, 0}, (angle - nodes[last]) / (nodes[0] + axis.period - nodes[last]), true};
     return {{last, last}, 0, angle <= nodes[last] + (axis.reach > 0 ? axis.reach : half_step) + kSlack};
@@ -81,7 +81,7 @@ bool AngleTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept 
   std::fill(f.begin(), f.end(), 0.0);
   if (wi.z <= 0 || wo.z <= 0) return true;
 
-  // the four angles
+  // The four angles are those of the table's frame: about the normal, or about the mirror direction of the light.
   const double theta_i = theta_of(wi), phi_i = phi_of(wi);
   std::array<double, 4> angles{phi_i, theta_i, 0, 0};
   const std::size_t azimuth = frame == Frame::normal ? 3 : 2;
@@ -102,7 +102,7 @@ bool AngleTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept 
     if (!near[k].inside) return false;
   }
 
-  // linear along each of them; holes have no weight, and the others' make up for it
+  // Interpolation is linear along each axis. Holes have no weight, and the other corners make up for it.
   double total = 0;
   for (std::size_t corner = 0; corner < 16; ++corner) {
     double weight = 1;
@@ -159,7 +159,7 @@ AngleTable tabulate_angles(BrdfRef source, AngleTable layout) {
       const auto [wi, wo] = node_directions(layout, node);
       if (wi.z <= 0 || wo.z <= 0) continue;
 
-      // folded: the mean with the mirror image of wo about the plane of incidence
+      // A folded table takes the mean with the mirror image of wo about the plane of incidence.
       bool known = source.eval(wi, wo, f);
       if (layout.folded) {
         const double phi_i = layout.axes[0].nodes[node[0]];

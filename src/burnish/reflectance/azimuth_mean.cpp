@@ -34,6 +34,7 @@ bool AzimuthMean::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept
 
 bool AzimuthMean::mean(BrdfRef source, Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   if (source.isotropic()) return exchange_ ? SymmetrizedBrdf(source).eval(wi, wo, f) : source.eval(wi, wo, f);
+  // The mean is over rotations of both directions; those at which the source is unknown are left out.
   std::array<double, kMaxChannels> buffer;
   const std::span<double> one(buffer.data(), f.size());
   std::fill(f.begin(), f.end(), 0.0);

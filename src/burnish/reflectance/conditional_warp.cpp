@@ -20,18 +20,18 @@ struct CellOfSide {
   }
 };
 
-/// Integral from 0 to t of the line from a to b.
+/// Returns the integral from 0 to t of the line from a to b.
 double integral(double a, double b, double t) noexcept {
   return t * (a + 0.5 * t * (b - a));
 }
 
-/// t in [0, 1] with integral(a, b, t) = area.
+/// Returns t in [0, 1] with integral(a, b, t) = area: the root of a quadratic, in a form that does not cancel.
 double solve(double a, double b, double area) noexcept {
   const double root = std::sqrt(std::max(0.0, a * a + 2 * area * (b - a)));
   return a + root > 0 ? std::clamp(2 * area / (a + root), 0.0, 1.0) : 0;
 }
 
-/// Largest i in [0, n - 2] with before(i) <= value.
+/// Returns the largest i in [0, n - 2] with before(i) <= value, by bisection.
 template <class Before>
 int find_cell(int n, double value, Before before) noexcept {
   int low = 0, high = n - 1;
@@ -64,7 +64,7 @@ ConditionalWarp2::ConditionalWarp2(int width, int height, std::span<const float>
   std::vector<double> before(w * h), total(h);  // of one slice
   for (std::size_t slice = 0; slice < rows_.size() / h; ++slice) {
     const auto values = density.subspan(slice * w * h, w * h);
-    // trapezoids along each row, then over the rows' totals
+    // Trapezoids integrate along each row, then over the rows' totals.
     double sum = 0;
     for (std::size_t y = 0; y < h; ++y) {
       double row = 0;
@@ -79,7 +79,7 @@ ConditionalWarp2::ConditionalWarp2(int width, int height, std::span<const float>
       if (y > 0) sum += 0.5 * (row + total[y - 1]);
     }
     if (!(sum > 0)) throw Error("a warp's density: expected a positive value in every slice");
-    // scaled so that the slice integrates to 1
+    // Everything is scaled so that the slice integrates to 1.
     double rows_before = 0;
     for (std::size_t y = 0; y < h; ++y) {
       if (y > 0) rows_before += 0.5 * (total[y] + total[y - 1]);
@@ -93,6 +93,7 @@ ConditionalWarp2::ConditionalWarp2(int width, int height, std::span<const float>
 ConditionalWarp2::Patch ConditionalWarp2::patch(int column, int row, const SliceMix& mix) const noexcept {
   Patch p;
   for (int i = 0; i < mix.count; ++i) {
+    // The mixed density is the weighted sum of the slices', and so are its integrals.
     const double weight = mix.weight[static_cast<std::size_t>(i)];
     const std::size_t first_row =
         std::size_t{mix.slice[static_cast<std::size_t>(i)]} * static_cast<std::size_t>(height_) +
@@ -116,31 +117,32 @@ ConditionalWarp2::Patch ConditionalWarp2::patch(int column, int row, const Slice
 double ConditionalWarp2::pdf(Point2 point, const SliceMix& mix) const noexcept {
   const CellOfSide x(point.x, width_), y(point.y, height_);
   const Patch p = patch(x.index, y.index, mix);
+  // The density is bilinear in the cell; nodes are 1 / (n - 1) apart.
   const double a = std::lerp(p.d00, p.d01, y.t), b = std::lerp(p.d10, p.d11, y.t);
   return std::lerp(a, b, x.t) * (width_ - 1) * (height_ - 1);
 }
 
 Point2 ConditionalWarp2::invert(Point2 point, const SliceMix& mix) const noexcept {
-  // the share of the row before the point, rows taken linearly between the two nodes
+  // u.x is the share of the row before the point. Rows are interpolated linearly between the two nodes.
   const CellOfSide x(point.x, width_), y(point.y, height_);
   const Patch p = patch(x.index, y.index, mix);
   const auto along_y = [t = y.t](double a, double b) { return a + t * (b - a); };
   const double total = along_y(p.total0, p.total1);
   const double in_row =
       along_y(p.before0, p.before1) + integral(along_y(p.d00, p.d01), along_y(p.d10, p.d11), x.t);
-  // the share of the rows before it
+  // u.y is the share of the rows before it.
   const double v = p.rows_before + integral(p.total0, p.total1, y.t);
   return {total > 0 ? std::min(in_row / total, 1.0) : point.x, std::min(v, 1.0)};
 }
 
 Point2 ConditionalWarp2::warp(Point2 u, const SliceMix& mix) const noexcept {
-  // the row: where the rows' totals sum to u.y
+  // The row is where the rows' totals sum to u.y.
   const int row =
       find_cell(height_, u.y, [&](int y) { return patch(0, std::min(y, height_ - 2), mix).rows_before; });
   const Patch rows = patch(0, row, mix);
   const double ty = solve(rows.total0, rows.total1, u.y - rows.rows_before);
 
-  // the place in the row: where its density sums to u.x of its total
+  // The place in the row is where its density sums to u.x of its total.
   const double target = u.x * std::lerp(rows.total0, rows.total1, ty);
   const int column = find_cell(width_, target, [&](int x) {
     const Patch p = patch(std::min(x, width_ - 2), row, mix);

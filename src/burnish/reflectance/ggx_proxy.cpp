@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMinProxyAlpha = 0.004;
 
-// What is reflected towards one view.
+// The light that is reflected towards one view.
 struct View {
   Vec3 wo;
   std::vector<DirectionWeight> rule;
@@ -19,7 +19,8 @@ struct View {
   double total = 0;
 };
 
-// Relative second moment of the weights, mean over the views.
+// Returns the relative second moment of the weights, mean over the views: integral of size^2 / pdf over the square of
+// the integral of size.
 double second_moment(const std::vector<View>& views, const GgxProxy& proxy) noexcept {
   double sum = 0;
   for (const View& view : views) {
@@ -36,7 +37,7 @@ double second_moment(const std::vector<View>& views, const GgxProxy& proxy) noex
 DrawnDirection GgxProxy::sample_wi(Vec3 wo, Point2 u) const noexcept {
   Vec3 wi;
   if (u.x < share) {
-    // a point of the spherical cap of the stretched view [Dupuy 2023]
+    // A point of the spherical cap of the stretched view gives a visible normal [Dupuy 2023].
     const double ax = distribution.alpha_x, ay = distribution.alpha_y;
     const Vec3 view = normalize({ax * wo.x, ay * wo.y, wo.z});
     const double phi = kTwoPi * u.x / share, z = (1 - u.y) * (1 + view.z) - view.z;
@@ -52,13 +53,13 @@ DrawnDirection GgxProxy::sample_wi(Vec3 wo, Point2 u) const noexcept {
 
 double GgxProxy::pdf(Vec3 wi, Vec3 wo) const noexcept {
   if (wi.z <= 0 || wo.z <= 0) return 0;
-  // density of visible normals D wo.h / projected_area, over 4 wo.h [Heitz 2018]
+  // The density of visible normals is D wo.h / projected_area, and that of wi is it over 4 wo.h [Heitz 2018].
   const double glossy = distribution.density(half_vector(wi, wo)) / (4 * distribution.projected_area(wo));
   return share * glossy + (1 - share) * wi.z / kPi;
 }
 
 GgxProxy fit_ggx_proxy(BrdfRef brdf, bool with_cosine) {
-  // what is reflected towards eight views
+  // The light reflected towards eight views is tabulated once.
   std::vector<View> views;
   std::vector<double> f(brdf.channels());
   for (int k = 0; k < 8; ++k) {
@@ -72,7 +73,7 @@ GgxProxy fit_ggx_proxy(BrdfRef brdf, bool with_cosine) {
     if (view.total > 0) views.push_back(std::move(view));
   }
 
-  // the proxy whose weights scatter least
+  // The proxy whose weights vary least is kept.
   GgxProxy best;
   double least = std::numeric_limits<double>::infinity();
   const auto consider = [&](double alpha_x, double alpha_y, double share) {
@@ -83,7 +84,7 @@ GgxProxy fit_ggx_proxy(BrdfRef brdf, bool with_cosine) {
     least = moment;
     best = proxy;
   };
-  // a coarse grid, then neighbours at shrinking ratios
+  // A coarse grid is tried first, then neighbours at shrinking ratios.
   for (double alpha = kMinProxyAlpha; alpha < 1; alpha *= 1.6)
     for (double share = 1; share > (with_cosine ? 0 : 0.9); share -= 0.25) consider(alpha, alpha, share);
   for (const double ratio : {1.5, 1.3, 1.15, 1.07, 1.03, 1.02})

@@ -22,7 +22,7 @@ DirectionPair draw_pair(Pcg32& random, bool isotropic) {
   }
 }
 
-/// Standard normal number. Source: [Box 1958].
+/// Returns a standard normal number. Source: [Box 1958].
 double draw_normal(Pcg32& random) {
   const double radius = std::sqrt(-2 * std::log1p(-random.uniform()));
   return radius * std::cos(kTwoPi * random.uniform());
@@ -43,7 +43,7 @@ Samples measure(BrdfRef source, const MeasureOptions& options) {
   Samples samples{source.channels(), source.isotropic(), {}, {}};
   samples.pairs.reserve(options.count);
 
-  // pairs and noise from streams of their own: noise does not change which pairs are drawn
+  // Pairs and noise come from streams of their own, so noise does not change which pairs are drawn.
   std::vector<double> f(source.channels());
   Pcg32 random(options.seed), noise(options.seed, 1);
   std::size_t unknown = 0;

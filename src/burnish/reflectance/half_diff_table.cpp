@@ -18,7 +18,7 @@ struct CellNeighbours {
   double fraction;
 };
 
-/// Position in cells, centres at halves, held constant beyond the outermost centres.
+/// Returns the neighbours of a position in cells, whose centres are at halves; constant beyond the outermost centres.
 CellNeighbours clamped_neighbours(double position, int count) noexcept {
   const double x = std::clamp(position - 0.5, 0.0, static_cast<double>(count - 1));
   const int low = std::min(static_cast<int>(x), std::max(count - 2, 0));
@@ -31,7 +31,7 @@ CellNeighbours periodic_neighbours(double position, int count) noexcept {
   return {{index, (index + 1) % count}, x - low};
 }
 
-/// A position's cell, the customary integer part.
+/// Returns a position's cell, the customary integer part.
 int cell(double position, int count) noexcept {
   return std::clamp(static_cast<int>(position), 0, count - 1);
 }
@@ -42,6 +42,7 @@ struct PositionInCells {
 };
 
 PositionInCells position_in(const HalfDiffTable& table, Vec3 wi, Vec3 wo) noexcept {
+  // theta_h has cells that are even in its root, as MERL tables have; the other angles have even cells.
   const HalfDiff angles = to_half_diff(wi, wo);
   const double circle = angles.phi_d / (table.full_circle ? kTwoPi : kPi);
   return {std::sqrt(angles.theta_h / kHalfPi) * table.theta_h_count,
@@ -68,7 +69,8 @@ HalfDiff HalfDiffTable::centre(int h, int d, int p) const noexcept {
 
 bool HalfDiffTable::above_horizon(int h, int d, int p) const noexcept {
   const HalfDiff angles = centre(h, d, p);
-  // The cosines of the two directions are cos cos -+ sin sin cos(phi_d).
+  // The cosines of the two directions are cos cos -+ sin sin cos(phi_d), positive if the product of tangents is below
+  // 1.
   return std::tan(angles.theta_h) * std::tan(angles.theta_d) * std::abs(std::cos(angles.phi_d)) < 1;
 }
 
@@ -86,7 +88,7 @@ bool HalfDiffTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexce
   const CellNeighbours d = clamped_neighbours(at.theta_d, theta_d_count);
   const CellNeighbours p = periodic_neighbours(at.phi_d, phi_d_count);
 
-  // trilinear; holes have no weight, and the others' make up for it
+  // Interpolation is trilinear. Holes have no weight, and the other corners make up for it.
   double total = 0;
   for (std::size_t corner = 0; corner < 8; ++corner) {
     const std::size_t ch = corner & 1, cd = corner >> 1 & 1, cp = corner >> 2;

@@ -23,7 +23,7 @@ namespace {
 // Directions that differ by less are the same: far above rounding, far below an instrument's step.
 constexpr double kSameDirection = 1e-6;
 constexpr double kSameIncidence = 1e-4;  // radians
-// What lies on the horizon is not above it, whatever a last bit says.
+// Directions on the horizon are not above it, whatever their last bit says.
 constexpr double kAboveHorizon = 1e-9;
 
 using Key = std::array<std::int64_t, 4>;
@@ -32,14 +32,16 @@ std::int64_t rounded(double x) noexcept {
   return static_cast<std::int64_t>(std::llround(x / kSameDirection));
 }
 
-// What rotation, reflection and exchange leave of a pair of an isotropic source.
+// Returns the numbers of an isotropic source's pair that rotation, reflection and exchange leave alone: both sines,
+// the smaller first, and the length of their vectors' sum.
 std::array<double, 3> isotropic_numbers(const DirectionPair& pair) noexcept {
   const auto [wi, wo] = pair;
   const double i = std::hypot(wi.x, wi.y), o = std::hypot(wo.x, wo.y);
   return {std::min(i, o), std::max(i, o), std::hypot(wi.x + wo.x, wi.y + wo.y)};
 }
 
-// The same for all pairs that rotation, reflection (both of isotropic sources) and exchange make of one.
+// Returns a key that is the same for all pairs that rotation, reflection (both for isotropic sources) and exchange
+// make of one.
 Key key_of(const DirectionPair& pair, bool isotropic) noexcept {
   const auto [wi, wo] = pair;
   if (isotropic) {
@@ -72,15 +74,15 @@ void number_incidences(MeasuredNodes& nodes) {
   for (const DirectionPair& pair : nodes.samples.pairs) nodes.incidence.push_back(places[incidence_of(pair)]);
 }
 
-// Groups numbered from 0 on in the order in which they come.
+// Numbers the groups from 0 on, in the order in which they come.
 void number_groups(MeasuredNodes& nodes) {
   std::map<std::uint32_t, std::uint32_t> numbers;
   for (std::uint32_t& group : nodes.groups)
     group = numbers.emplace(group, static_cast<std::uint32_t>(numbers.size())).first->second;
 }
 
-// What the values of an RGL table's node are multiplied by to be f_r: 1 / cos theta_o and, where the table
-// divided by it, ndf / (4 sigma).
+// Returns the factor from the values of an RGL table's node to f_r: 1 / cos theta_o and, where the table divided by
+// it, ndf / (4 sigma) [Dupuy 2018, sec. 4].
 double rgl_node_scale(const RglData& data, const DirectionPair& pair) noexcept {
   if (!data.jacobian) return 1 / pair.wo.z;
   const auto place = [](Vec3 w) { return rgl_square(theta_of(w), std::remainder(phi_of(w), kTwoPi)); };
@@ -92,7 +94,8 @@ bool is_valid(const RglData& data, std::size_t node) noexcept {
   return data.valid[node / 8] >> (7 - node % 8) & 1;
 }
 
-// Whether to believe the mask of valid nodes. There are files whose mask denies nearly all of a good measurement.
+// Returns true if the mask of valid nodes is to be believed. Some files have a mask that denies nearly all of a good
+// measurement.
 bool mask_holds(const RglData& data, std::size_t nodes) noexcept {
   if (data.valid.size() * 8 < nodes) return false;
   std::size_t valid = 0;
@@ -100,12 +103,13 @@ bool mask_holds(const RglData& data, std::size_t nodes) noexcept {
   return 2 * valid >= nodes;
 }
 
-// How groups are numbered: as they come, or where the order is a file's, or a last bit's, as their directions are.
+// The order of the groups' numbers: as they come or, where the order is a file's or depends on a last bit, by their
+// directions.
 enum class Numbering { as_they_come, by_geometry };
 
-// Groups by geometry, halves by coin, incidences.
+// Sets groups by geometry, halves by a coin for each group, and incidences.
 MeasuredNodes finished(MeasuredNodes nodes, Numbering numbering = Numbering::as_they_come) {
-  // pairs that lead to one another lie side by side, the first that came first
+  // Sorted by key, pairs that lead to one another lie side by side, the one that came first at the front.
   std::vector<std::pair<Key, std::uint32_t>> keyed;
   keyed.reserve(nodes.size());
   for (std::uint32_t i = 0; i < nodes.size(); ++i)
@@ -121,7 +125,7 @@ MeasuredNodes finished(MeasuredNodes nodes, Numbering numbering = Numbering::as_
     nodes.groups[keyed[i].second] = by_geometry ? next - 1 : keyed[first].second;
   }
   keyed = {};
-  // the place of a group's first node becomes its number
+  // The place of a group's first node becomes its number.
   for (std::uint32_t i = 0; i < nodes.size() && !by_geometry; ++i)
     nodes.groups[i] = nodes.groups[i] == i ? next++ : nodes.groups[nodes.groups[i]];
 
@@ -144,7 +148,7 @@ struct Node {
 };
 using Visit = std::function<void(const Node&)>;
 
-// Each of these visits the nodes in the order of measured_nodes.
+// Each of these functions visits the nodes in the order of measured_nodes.
 void each_node(const RglTable& table, const Visit& visit) {
   const RglData& data = table.data();
   const auto width = static_cast<std::uint32_t>(data.spectra.width),
@@ -164,12 +168,12 @@ void each_node(const RglTable& table, const Visit& visit) {
                               static_cast<int>(row), static_cast<int>(column));
     if (!lies_above(pair)) continue;
 
-    // what stands there, as a BRDF
+    // The stored values become f_r.
     const double scale = rgl_node_scale(data, pair);
     for (std::size_t c = 0; c < channels; ++c)
       f[c] = scale * static_cast<double>(data.spectra.values[node * channels + c]);
 
-    // mirror twins are one; rows that meet at the normal were measured one by one
+    // Mirror twins are one measurement; rows that meet at the normal were measured one by one.
     const std::uint32_t mirrored = table.isotropic() ? std::min(row, height - 1 - row) : row;
     visit({.pair = pair,
            .f = f,
@@ -234,7 +238,7 @@ NodeCount counted(const auto& source) {
   return count;
 }
 
-// Nodes without their incidences, in no more memory than they take.
+// Collects the nodes without their incidences, in no more memory than they take.
 MeasuredNodes collected(const auto& source, std::size_t channels, bool isotropic) {
   const std::size_t count = count_nodes(source).nodes;
   MeasuredNodes nodes{.samples = {.channels = channels, .isotropic = isotropic}};
@@ -253,7 +257,7 @@ MeasuredNodes collected(const auto& source, std::size_t channels, bool isotropic
   return nodes;
 }
 
-// The same, the mean weight 1.
+// Scales the weights to a mean of 1.
 MeasuredNodes with_mean_weight(MeasuredNodes nodes) {
   double total = 0;
   for (const double weight : nodes.weights) total += weight;

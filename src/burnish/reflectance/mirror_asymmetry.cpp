@@ -11,7 +11,7 @@ namespace burnish {
 double mirror_asymmetry(BrdfRef source) {
   constexpr double kFloor = 1e-3;
   constexpr std::size_t kPairs = 4000;
-  // values of pairs and of their mirror images, many at a time: networks are slow one by one
+  // Values of pairs and of their mirror images are computed many at a time, as networks are slow one by one.
   const auto channels = source.channels();
   std::vector<DirectionPair> pairs = draw_pairs(kPairs, 1, true);
   std::vector<double> f(pairs.size() * channels), mirrored(f.size());
@@ -23,6 +23,7 @@ double mirror_asymmetry(BrdfRef source) {
   }
   source.eval(pairs, mirrored, mirrored_known);
 
+  // The asymmetry is the mean of half of |ln(f / mirrored f)|, with a floor of 1e-3.
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (!known[i] || !mirrored_known[i]) continue;

@@ -17,7 +17,7 @@ constexpr std::size_t kTried = kMostNext, kJudged = 400;
 constexpr std::uint64_t kTriedSeed = 21, kJudgedSeed = 22;
 constexpr std::size_t kTriedTogether = 16;  // a thread at a time
 
-/// The first pairs of draw_pairs that node_figures would judge.
+/// Returns the first pairs of draw_pairs that node_figures would score.
 std::vector<DirectionPair> pairs_to_judge(std::size_t count, std::uint64_t seed, bool isotropic) {
   std::vector<DirectionPair> pairs = draw_pairs(2 * count, seed, isotropic);
   std::erase_if(pairs, [](const DirectionPair& pair) {
@@ -27,20 +27,20 @@ std::vector<DirectionPair> pairs_to_judge(std::size_t count, std::uint64_t seed,
   return pairs;
 }
 
-/// As an instrument turns: an isotropic sample's light stands at azimuth 0.
+/// Returns the pair as an instrument turns: the light of an isotropic sample stands at azimuth 0.
 DirectionPair as_instruments_turn(const DirectionPair& pair, bool isotropic) noexcept {
   if (!isotropic) return pair;
   const double turn = std::abs(std::remainder(phi_of(pair.wo) - phi_of(pair.wi), kTwoPi));
   return {spherical_direction(theta_of(pair.wi), 0), spherical_direction(theta_of(pair.wo), turn)};
 }
 
-/// A covariance is at most what both variances allow.
+/// Bounds a covariance by what both variances allow (Cauchy-Schwarz).
 double bounded(double covariance, double variance, double other) noexcept {
   const double most = std::sqrt(variance * other);
   return std::clamp(covariance, -most, most);
 }
 
-/// Function variances of pairs, and what they are multiplied by.
+/// Variances of the function and of noise at pairs, and the roots of their calibrations.
 struct Known {
   std::vector<DirectionPair> pairs;
   std::vector<double> variances, noise, scale;
@@ -59,8 +59,8 @@ struct Known {
   std::size_t size() const noexcept { return pairs.size(); }
 };
 
-/// Covariances [row][column] of pairs of the function, given the nodes near either: the less of both, since more nodes
-/// leave less of it.
+/// Returns covariances [row][column] of the function at pairs. Each is the smaller one of those given the nodes near
+/// either pair, since more nodes leave less of it.
 std::vector<double> covariances_of(const KrigedNodes& function, const Known& rows, const Known& columns) {
   const std::size_t count = columns.size();
   std::vector<double> by_row(rows.size() * count), by_column(rows.size() * count);
@@ -84,7 +84,7 @@ std::vector<double> covariances_of(const KrigedNodes& function, const Known& row
   return by_row;
 }
 
-/// What is expected of pairs that may be measured and of those where errors count, while pairs are chosen.
+/// The expected errors of pairs that may be measured, and of those at which errors count, while pairs are chosen.
 class Expectation {
  public:
   Expectation(const KrigedNodes& function, bool isotropic)
@@ -97,8 +97,9 @@ class Expectation {
   const DirectionPair& pair(std::size_t c) const noexcept { return tried_.pairs[c]; }
   double error(std::size_t c) const noexcept { return std::sqrt(tried_.variances[c]); }
 
-  /// By how much a reading lowers the sum of expected errors.
+  /// Returns by how much a reading lowers the sum of expected errors.
   double gain(std::size_t c) const noexcept {
+    // A reading at c leaves at r the variance v_r - cov(c, r)^2 / (v_c + noise_c) [Rasmussen 2006, eq. 2.26].
     const double reading = tried_.variances[c] + tried_.noise[c];
     double gain = 0;
     for (std::size_t r = 0; r < judged_.size(); ++r) {
@@ -108,7 +109,8 @@ class Expectation {
     return gain;
   }
 
-  /// Conditions everything on a reading: a step of a Cholesky factorization of the covariance of all pairs.
+  /// Conditions all variances and covariances on a reading: one step of a Cholesky factorization of the covariance of
+  /// all pairs.
   void take(std::size_t chosen) {
     const double by = 1 / std::sqrt(tried_.variances[chosen] + tried_.noise[chosen]);
     const auto lowered = [](double variance, double share) {

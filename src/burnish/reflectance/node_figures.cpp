@@ -17,12 +17,12 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kMostJudged = 1000;    // nodes
-constexpr std::size_t kJudgedTogether = 64;  // of them a thread at a time
+constexpr std::size_t kJudgedTogether = 64;  // of these, so many for each thread at a time
 
-// Incidences are left out where an instrument stood at few; two of a hand are this far apart.
+// Incidences are held out where an instrument stood at few. Two of one fold are kIncidenceHands apart.
 constexpr std::size_t kMinIncidences = 5, kMaxIncidences = 24, kIncidenceHands = 3;
 
-/// Weighted sums of errors, to be means.
+/// Weighted sums of errors, which become means.
 struct ErrorSums {
   double log_cos = 0, log_ratio = 0, log_ratio_sq = 0, difference_sq = 0, weight = 0;
   std::size_t count = 0;
@@ -75,16 +75,17 @@ ErrorSums sums_of(const MeasuredNodes& nodes, BrdfRef model, const NodeScoring& 
   return sums;
 }
 
-// The hand that a group is dealt to, as if by chance: groups in a row must not make patterns.
+// Returns the fold of a group, at random but the same each time: consecutive groups must not make patterns.
 std::size_t hand_of(std::uint32_t group, std::size_t hands) {
   return static_cast<std::size_t>(Pcg32(group).uniform() * static_cast<double>(hands));
 }
 
-// Errors at nodes as predicted from those of the other hands; what is in no hand is always seen.
+// Returns the errors at nodes as predicted from the other folds (cross-validation). Nodes in no fold always take part
+// in predictions.
 template <class Hand>
 ErrorSums held_out(const MeasuredNodes& nodes, const LogCovariance& covariance, std::size_t hands,
                    Hand hand) {
-  // every so many of the nodes that are in a hand and may be scored
+  // Every step-th node that is in a fold and may be scored is predicted, at most kMostJudged of them.
   std::vector<std::size_t> judged;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const DirectionPair& pair = nodes.samples.pairs[i];
@@ -138,6 +139,7 @@ NodeFigures held_out_figures(const MeasuredNodes& nodes, const LogCovariance& co
 }
 
 std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const LogCovariance& covariance) {
+  // Each incidence but the first and the last is one of three folds in turn, so its neighbours on both sides stay.
   std::vector<std::uint32_t> there(nodes.incidence);
   std::ranges::sort(there);
   there.erase(std::unique(there.begin(), there.end()), there.end());
@@ -147,7 +149,7 @@ std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const
     hand_of_incidence[there[place]] = place % kIncidenceHands;
   const ErrorSums sums = held_out(nodes, covariance, kIncidenceHands,
                                   [&](std::size_t i) { return hand_of_incidence[nodes.incidence[i]]; });
-  if (sums.count == 0) return {};  // those between are all along the horizon
+  if (sums.count == 0) return {};  // all incidences in folds lie along the horizon
   return sums.means({});
 }
 
@@ -155,6 +157,8 @@ LogCovariance choose_covariance(const MeasuredNodes& nodes, const std::function<
   if (!any_is_scored(nodes)) return LogCovariance(nodes.samples.isotropic);
   std::vector<LogCovariance> likely = likely_covariances(nodes);
   likely.push_back(LogCovariance(nodes.samples.isotropic));
+  // The covariance with the least sum of log errors wins: at held-out nodes and, if there are such, at held-out
+  // incidences.
   const auto error_of = [&](const LogCovariance& covariance) {
     const auto error = [](const NodeFigures& figures) {
       return std::log(figures.relative) + std::log(figures.log_cos);

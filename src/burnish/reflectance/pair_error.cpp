@@ -13,7 +13,7 @@ PairError pair_error(const DirectionPair& pair, std::span<const double> referenc
     const double f = std::max(0.0, reference[reference.size() == 1 ? 0 : c]);
     const double g = std::max(0.0, model[model.size() == 1 ? 0 : c]);
     error.log_cos += std::abs(std::log1p(f * pair.wi.z) - std::log1p(g * pair.wi.z));
-    // a zero on both sides is no error even where there is no floor
+    // Equal values are no error, even zeros without a floor.
     const double ratio = f == g ? 0 : std::log((f + floor) / (g + floor));
     error.log_ratio += std::abs(ratio);
     error.log_ratio_sq += ratio * ratio;

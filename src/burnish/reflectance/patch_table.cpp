@@ -37,6 +37,7 @@ std::size_t PatchBasis::patch_of(Vec3 w) const noexcept {
   std::size_t r = 0;
   while (r + 1 < rings.size() && theta >= rings[r].theta_high) ++r;
   const PatchRing& ring = rings[r];
+  // Patches of a ring are centred on first_azimuth and its multiples, hence the rounding.
   const double turn = phi_of(w) / kTwoPi - first_azimuth / kTwoPi + 1;
   return ring.first +
          static_cast<std::size_t>(std::floor(turn * static_cast<double>(ring.count) + 0.5)) % ring.count;
@@ -50,6 +51,7 @@ Vec3 PatchBasis::centre(std::size_t patch) const noexcept {
 
 double PatchBasis::projected_solid_angle(std::size_t patch) const noexcept {
   const PatchRing& ring = ring_of(*this, patch);
+  // The integral of cos(theta) over a ring is pi (sin^2 high - sin^2 low), shared evenly by its patches.
   const double low = std::sin(ring.theta_low), high = std::sin(ring.theta_high);
   return kPi * (high * high - low * low) / static_cast<double>(ring.count);
 }
@@ -68,6 +70,7 @@ bool PatchTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept 
 }
 
 double PatchTable::albedo(Vec3 wi) const noexcept {
+  // The albedo is the sum of f times the projected solid angle of each outgoing patch.
   double sum = 0;
   const std::size_t column = incident.patch_of(wi);
   for (std::size_t o = 0; o < outgoing.size(); ++o)

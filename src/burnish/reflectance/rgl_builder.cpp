@@ -23,13 +23,13 @@ std::size_t index(int i) noexcept {
   return static_cast<std::size_t>(i);
 }
 
-/// Mean over the channels; negative where the source knows nothing.
+/// Returns the mean over the channels; negative where the source is unknown.
 double grey(BrdfRef source, Vec3 wi, Vec3 wo, std::vector<double>& f) {  // f: room for the channels
   if (!source.eval(wi, wo, f)) return -1;
   return std::max(0.0, std::accumulate(f.begin(), f.end(), 0.0) / static_cast<double>(f.size()));
 }
 
-/// Retro-reflection f(w, w) cos theta over the rows and columns of a normal distribution; gaps take the value
+/// Returns retro-reflection f(w, w) cos theta over the rows and columns of a normal distribution. Gaps take the value
 /// beside them.
 std::vector<double> retro_reflection(BrdfRef source, int rows, int columns) {
   std::vector<double> result(index(rows * columns));
@@ -62,7 +62,7 @@ struct HalfNode {
   std::size_t value;  ///< of the normal distribution
 };
 
-/// Trapezoids in (u, v), so many around and along theta.
+/// Returns a quadrature over half vectors by trapezoids in (u, v), with `around` azimuths and `columns` polar angles.
 std::vector<HalfNode> half_nodes(int around, int columns, bool isotropic) {
   std::vector<HalfNode> nodes;
   for (int j = 0; j < around; ++j)
@@ -77,7 +77,7 @@ std::vector<HalfNode> half_nodes(int around, int columns, bool isotropic) {
   return nodes;
 }
 
-/// D from retro-reflection f cos = D / (4 sigma), scaled to a projected area of 1.
+/// Returns D from retro-reflection, f cos = D / (4 sigma), scaled to a projected area of 1.
 std::vector<double> distribution_of(const std::vector<double>& retro, int rows, int columns,
                                     const RglGrid& sigma, const std::vector<HalfNode>& nodes) {
   std::vector<double> ndf(retro.size());
@@ -86,6 +86,7 @@ std::vector<double> distribution_of(const std::vector<double>& retro, int rows, 
       const auto at = index(j * columns + i);
       ndf[at] = retro[at] * rgl_lookup(sigma, {node(i, columns), rows > 1 ? node(j, rows) : 0.5});
     }
+  // D is kept positive, then divided by its projected area, the integral of D(m) m.z.
   const double least = kFloor * *std::max_element(ndf.begin(), ndf.end());
   for (double& d : ndf) d = std::max(d, least);
   double projected = 0;
@@ -94,7 +95,7 @@ std::vector<double> distribution_of(const std::vector<double>& retro, int rows, 
   return ndf;
 }
 
-/// sigma(w) = integral of D(m) max(0, m.w), in so many rows.
+/// Returns sigma(w) = integral of D(m) max(0, m.w), in `rows` rows of azimuth.
 std::vector<float> projected_areas(const std::vector<double>& ndf, int rows,
                                    const std::vector<HalfNode>& nodes) {
   std::vector<float> sigma(index(rows * kSigmaTheta));
@@ -111,7 +112,7 @@ std::vector<float> projected_areas(const std::vector<double>& ndf, int rows,
   return sigma;
 }
 
-/// What has one row, as the two that grids have at least.
+/// Repeats a single row, as grids have two at least.
 template <class T>
 void repeat_row(std::vector<T>& values) {
   const std::vector<T> row = values;
@@ -128,6 +129,7 @@ Microfacets find_microfacets(BrdfRef source, const RglOptions& options) {
   Microfacets result{{columns, isotropic ? 2 : rows, {}}, {kSigmaTheta, isotropic ? 2 : kSigmaPhi, {}}};
   result.sigma.values.assign(index(result.sigma.height * kSigmaTheta), 1);
   std::vector<double> ndf(retro.size());
+  // Power iteration: D depends on sigma by retro-reflection, and sigma on D by projection.
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     ndf = distribution_of(retro, rows, columns, result.sigma, nodes);
     result.sigma.values = projected_areas(ndf, sigma_rows, nodes);
@@ -138,7 +140,7 @@ Microfacets find_microfacets(BrdfRef source, const RglOptions& options) {
   return result;
 }
 
-/// Density of the visible normals in (u, v), D(m) max(0, m.wi) dm / (du dv). [Dupuy 2018, sec. 4]
+/// Adds the density of the visible normals in (u, v), D(m) max(0, m.wi) dm / (du dv) [Dupuy 2018, sec. 4].
 void add_visible_normals(const RglGrid& ndf, Vec3 wi, RglGrid& vndf) {
   std::vector<double> slice;
   for (int j = 0; j < vndf.height; ++j)
@@ -177,7 +179,7 @@ void fill_gaps(std::span<float> values, std::vector<std::uint8_t> valid, int sid
   }
 }
 
-/// The direction of a slice, a little above the horizon.
+/// Returns the direction of a slice, a little above the horizon.
 Vec3 incident(const RglData& data, std::size_t slice) {
   const auto theta = static_cast<double>(data.theta_i[slice % data.theta_i.size()]);
   return spherical_direction(std::min(theta, kMaxTheta),
@@ -228,7 +230,7 @@ RglTable make_rgl_table(BrdfRef source, const RglOptions& options) {
   const auto channels = index(source.channels()), nodes = index(side * side);
   const ConditionalWarp2 warp(data.vndf.width, data.vndf.height, data.vndf.values);
 
-  // every slice: what the source has at the half vectors that the warp makes of even nodes
+  // Every slice takes the source's values at the half vectors that the warp makes of evenly spaced nodes.
   data.spectra = {side, side, std::vector<float>(slices * nodes * channels)};
   data.luminance = {side, side, std::vector<float>(slices * nodes)};
   std::vector<std::uint8_t> valid(slices * nodes);
@@ -247,12 +249,13 @@ RglTable make_rgl_table(BrdfRef source, const RglOptions& options) {
         const Vec3 wo = normalize(2 * dot(wi, h) * h - wi);
         known[at] = wo.z > 0 && source.eval(wi, wo, f);
         if (!known[at]) continue;
+        // Stored values are f cos(theta_o) 4 sigma / D, which evaluation divides out.
         const double scale = wo.z * 4 * sigma_i / rgl_lookup(data.ndf, half);
         for (std::size_t c = 0; c < channels; ++c)
           values[at * channels + c] = static_cast<float>(scale * f[c]);
       }
 
-    // the mask, then values in the gaps, then the mean over the channels
+    // The mask of known nodes is kept, gaps are filled, and the luminance is the mean over the channels.
     std::copy(known.begin(), known.end(), valid.begin() + static_cast<std::ptrdiff_t>(slice * nodes));
     fill_gaps(values, std::move(known), side, channels);
     for (std::size_t i = 0; i < nodes; ++i)

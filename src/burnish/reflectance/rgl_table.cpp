@@ -44,7 +44,7 @@ void require_increasing(const std::vector<float>& angles, const char* name) {
                               static_cast<double>(angles[i]), static_cast<double>(angles[i - 1])));
 }
 
-/// Where x lies between increasing nodes: lower index and weight of the upper; clamped at the ends.
+/// Returns the lower index and the weight of the upper node for x among increasing nodes, clamped at the ends.
 std::pair<std::uint32_t, double> locate(const std::vector<float>& nodes, double x) noexcept {
   const std::size_t n = nodes.size();
   std::size_t i = 0;
@@ -54,18 +54,18 @@ std::pair<std::uint32_t, double> locate(const std::vector<float>& nodes, double 
   return {static_cast<std::uint32_t>(i), std::clamp((x - a) / (b - a), 0.0, 1.0)};
 }
 
-/// theta_of by a square root, which costs less than hypot. w of any length that is not tiny.
+/// Returns theta_of by a square root, which costs less than hypot. w may have any length that is not tiny.
 double polar_angle(Vec3 w) noexcept {
   return std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
 }
 
-/// In [-pi, pi]; 0 of the normal.
+/// Returns the azimuth in [-pi, pi]; 0 for the normal.
 double azimuth(Vec3 w) noexcept {
   return is_pole(w) ? 0 : std::atan2(w.y, w.x);
 }
 
-/// Solid angle of half vectors over area of the unit square, dm / (du dv), with theta = pi/2 u^2 and
-/// phi = 2 pi v - pi: sin(theta) dtheta/du dphi/dv = sin(theta) (pi u) (2 pi).
+/// Returns the solid angle of half vectors over the area of the unit square, dm / (du dv). With theta = pi/2 u^2 and
+/// phi = 2 pi v - pi it is sin(theta) dtheta/du dphi/dv = sin(theta) (pi u) (2 pi).
 double solid_angle_over_area(Point2 half) noexcept {
   return 2 * kPi * kPi * half.x * std::sin(rgl_theta(half.x));
 }
@@ -132,7 +132,7 @@ RglTable::RglTable(RglData data) : data_(std::move(data)) {
   set_reduction();
   warp_ = ConditionalWarp2(data_.vndf.width, data_.vndf.height, data_.vndf.values);
 
-  // a density has no negative values; a dark slice is drawn from evenly
+  // A density has no negative values, and a dark slice is drawn from evenly.
   std::vector<float> luminance = data_.luminance.values;
   const std::size_t slice = luminance.size() / slices;
   for (std::size_t first = 0; first < luminance.size(); first += slice) {
@@ -147,7 +147,7 @@ void RglTable::set_reduction() {
   if (isotropic()) return;
   const double first = static_cast<double>(data_.phi_i.front()),
                last = static_cast<double>(data_.phi_i.back());
-  // how often the range fits in the circle
+  // The range of phi_i fits once, twice or four times in the circle.
   const double times = std::round(kTwoPi / (last - first));
   require((times == 1 || times == 2 || times == 4) && std::abs(first) < 2 * kTwoPi &&
               last - first < kTwoPi + kPhiTolerance,
@@ -162,7 +162,7 @@ void RglTable::set_reduction() {
   }
 }
 
-/// The slices next to an incident direction: two in theta_i, of an anisotropic table times two in phi_i.
+/// Returns the slices next to an incident direction: two in theta_i, and for an anisotropic table also two in phi_i.
 SliceMix RglTable::mix_at(double phi, double theta) const noexcept {
   const auto stride = static_cast<std::uint32_t>(data_.theta_i.size());
   const auto polar = locate(data_.theta_i, theta);
@@ -183,7 +183,7 @@ SliceMix RglTable::mix_at(double phi, double theta) const noexcept {
 
   const double first = static_cast<double>(data_.phi_i.front()),
                last = static_cast<double>(data_.phi_i.back());
-  // phi_i may start anywhere: into the turn that begins at the first
+  // phi_i may start anywhere, so phi is moved into the turn that begins at the first one.
   phi -= kTwoPi * std::floor((phi - first) / kTwoPi);
   const auto [p, p_weight] = locate(data_.phi_i, phi);
   if (phi <= last) {
@@ -191,7 +191,7 @@ SliceMix RglTable::mix_at(double phi, double theta) const noexcept {
     add(p + 1, p_weight);
     return mix;
   }
-  // Beyond the last phi_i the circle closes; of a half or a quarter only rounding leads here.
+  // Beyond the last phi_i the circle closes. For a half or a quarter circle, only rounding leads here.
   const double gap = first + kTwoPi - last, beyond = gap > 0 ? std::min((phi - last) / gap, 1.0) : 0;
   const double to_first = reduction_ == 1 ? beyond : std::round(beyond);
   add(static_cast<std::uint32_t>(data_.phi_i.size() - 1), 1 - to_first);
@@ -208,33 +208,33 @@ struct RglTable::Symmetry {
 };
 
 RglTable::Symmetry RglTable::symmetry_of(Vec3 wi) const noexcept {
-  // half a circle: wi lies beyond it where it is clockwise from the first phi_i
+  // For half a circle, wi lies beyond it where it is clockwise from the first phi_i: it is turned by pi.
   if (reduction_ == 2 && wi.y * cos_first_ - wi.x * sin_first_ < 0) return {-1, -1};
-  // a quarter: wi is taken to the quadrant that is stored
+  // For a quarter, wi is reflected into the quadrant that is stored.
   if (reduction_ == 4) return {wi.x * sign_x_ < 0 ? -1.0 : 1.0, wi.y * sign_y_ < 0 ? -1.0 : 1.0};
   return {};
 }
 
-/// Where a pair of directions lies in the tables.
+/// The places of a pair of directions in the tables.
 struct RglTable::TablePlaces {
   double theta_i, phi_i;  // of wi, for sigma
-  Point2 half;            // of the half vector: in the squares of ndf and vndf
+  Point2 half;            // of the half vector, in the squares of ndf and vndf
   Point2 sample;          // in the square of spectra and luminance
   SliceMix mix;           // the slices of the conditioned tables
 };
 
 RglTable::TablePlaces RglTable::places_of(Vec3 wi, Vec3 wo) const noexcept {
-  // into the part of the circle that is stored
+  // Both directions are taken into the part of the circle that is stored.
   const Symmetry symmetry = symmetry_of(wi);
   wi = symmetry(wi);
   const Vec3 h = wi + symmetry(wo);  // its length does not matter
 
-  // Cartesian -> spherical
+  // The incident direction and the half vector become spherical angles.
   TablePlaces places{.theta_i = polar_angle(wi), .phi_i = 0};
   const double theta_h = polar_angle(h);
   double phi_h = 0;
   if (isotropic()) {
-    // phi_h from wi, by their cross and dot product in the plane
+    // phi_h is measured from wi, by their cross and dot product in the plane.
     const Vec3 from = is_pole(wi) ? Vec3{1, 0, 0} : wi;
     phi_h = is_pole(h) ? 0 : std::atan2(from.x * h.y - from.y * h.x, from.x * h.x + from.y * h.y);
   } else {
@@ -242,10 +242,10 @@ RglTable::TablePlaces RglTable::places_of(Vec3 wi, Vec3 wo) const noexcept {
     phi_h = azimuth(h);
   }
 
-  // spherical -> unit square of half vectors
+  // The angles of the half vector become a place in the unit square [Dupuy 2018, sec. 4].
   places.half = rgl_square(theta_h, phi_h);
 
-  // invert the warp by visible normals -> unit square of samples
+  // Inverting the warp by visible normals gives the place in the square of samples, where spectra are stored.
   places.mix = mix_at(places.phi_i, places.theta_i);
   places.sample = warp_.invert(places.half, places.mix);
   return places;
@@ -263,13 +263,14 @@ bool RglTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   if (!(wi.z > 0 && wo.z > 0)) return true;
   const auto [theta_i, phi_i, half, sample, mix] = places_of(wi, wo);
 
-  // what the stored values were multiplied by: cos(theta_o), and 4 sigma / ndf [Dupuy 2018, sec. 4]
+  // The stored values were multiplied by cos(theta_o) and 4 sigma / ndf [Dupuy 2018, sec. 4]: the scale divides them
+  // out.
   double scale = 1 / std::max(wo.z, kMinCosine);
   if (data_.jacobian)
     scale *= rgl_lookup(data_.ndf, half) /
              (4 * std::max(rgl_lookup(data_.sigma, rgl_square(theta_i, phi_i)), kMinSigma));
 
-  // spectra, bilinear in the square and mixed over the slices
+  // Spectra are interpolated bilinearly in the square and mixed over the slices.
   const auto channels = data_.channels;
   const auto width = static_cast<std::size_t>(data_.spectra.width);
   const std::size_t slice_size = width * static_cast<std::size_t>(data_.spectra.height);
@@ -286,18 +287,18 @@ bool RglTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
 }
 
 DrawnDirection RglTable::sample_wo(Vec3 wi, Point2 u) const noexcept {
-  // the slices of wi, in the part of the circle that is stored
+  // The slices of wi are found in the part of the circle that is stored.
   const Symmetry symmetry = symmetry_of(wi);
   const Vec3 w = symmetry(wi);
   const double phi_i = azimuth(w);
   const SliceMix mix = mix_at(phi_i, polar_angle(w));
 
-  // uniform -> by luminance -> by visible normals -> half vector
+  // The uniform point is warped by luminance, then by visible normals, which gives the half vector.
   const Point2 sample = luminance_warp_.warp(u, mix), half = warp_.warp(sample, mix);
   const double phi_h = rgl_phi(half.y);
   const Vec3 h = spherical_direction(rgl_theta(half.x), isotropic() ? phi_h + phi_i : phi_h);
 
-  // reflect; dwo = 4 dot(wi, h) dh
+  // wi is reflected about it. The density divides by dwo = 4 dot(wi, h) dh [Walter 2007, eq. 14].
   const double to_half = dot(w, h);
   const Vec3 wo = symmetry(2 * to_half * h - w);
   const double area = solid_angle_over_area(half) * 4 * to_half;
@@ -308,6 +309,7 @@ DrawnDirection RglTable::sample_wo(Vec3 wi, Point2 u) const noexcept {
 double RglTable::pdf_wo(Vec3 wi, Vec3 wo) const noexcept {
   if (!(wi.z > 0 && wo.z > 0)) return 0;
   const auto [theta_i, phi_i, half, sample, mix] = places_of(wi, wo);
+  // The density in the square becomes one per solid angle of wo.
   const double area = solid_angle_over_area(half) * 2 * length(wi + wo);  // 4 dot(wi, h) = 2 |wi + wo|
   return area > 0 ? luminance_warp_.pdf(sample, mix) * warp_.pdf(half, mix) / area : 0;
 }

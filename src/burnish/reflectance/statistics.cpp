@@ -22,6 +22,7 @@ ReciprocityError reciprocity_error(BrdfRef source, std::size_t count, std::uint6
     if (!known[i] || !swapped_known[i]) continue;
     ++result.pairs;
     for (std::size_t c = i * channels; c < (i + 1) * channels; ++c) {
+      // The error is |f - swapped f| over the mean of both, averaged over channels and pairs.
       const double total = std::abs(f[c] + swapped[c]);
       if (total > 0) sum += 2 * std::abs(f[c] - swapped[c]) / total / static_cast<double>(channels);
     }

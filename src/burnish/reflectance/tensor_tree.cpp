@@ -28,7 +28,7 @@ Coordinates coordinates_of(int rank, Vec3 wi, Vec3 wo) noexcept {
     const DiskPoint in = shirley_chiu_square({-wi.x, -wi.y}), out = shirley_chiu_square({wo.x, wo.y});
     return {inside(in.x), inside(in.y), inside(out.x), inside(out.y)};
   }
-  // wo turned until -wi is above +x
+  // The table stores wo turned until -wi is above +x, since the source is isotropic.
   const double sine = std::hypot(wi.x, wi.y);
   const double c = sine > 0 ? -wi.x / sine : 1, s = sine > 0 ? -wi.y / sine : 0;
   const DiskPoint out = shirley_chiu_square({c * wo.x + s * wo.y, c * wo.y - s * wo.x});
@@ -41,6 +41,7 @@ float look_up(const TensorTree& tree, Coordinates x) noexcept {
   while (node.log2 < 0) {
     std::size_t child = 0;
     for (std::size_t i = 0; i < rank; ++i) {
+      // Each level halves the cube along every axis; the coordinates are rescaled to the half.
       const bool upper = x[i] >= 0.5;
       child |= static_cast<std::size_t>(upper) << i;
       x[i] = 2 * x[i] - upper;
@@ -54,7 +55,7 @@ float look_up(const TensorTree& tree, Coordinates x) noexcept {
   return tree.values[node.first + index];
 }
 
-/// Walks the tree, corner and size of each cube known.
+/// Walks the tree and lists its leaves; corner and size of each cube are known on the way.
 class LeafList {
  public:
   explicit LeafList(const TensorTree& tree) : tree_(tree), rank_(static_cast<std::size_t>(tree.rank)) {}
@@ -152,8 +153,9 @@ class TreeBuilder {
 DiskPoint shirley_chiu_disk(DiskPoint square) noexcept {
   const double a = 2 * square.x - 1, b = 2 * square.y - 1;
   if (a == 0 && b == 0) return {0, 0};
+  // Concentric squares map to circles [Shirley 1997]: the larger coordinate is the radius, the ratio gives the angle.
   const bool along_x = std::abs(a) > std::abs(b);
-  const double radius = along_x ? a : b;  // with the sign of its side
+  const double radius = along_x ? a : b;  // signed by its side
   const double angle = along_x ? kQuarterPi * (b / a) : kHalfPi - kQuarterPi * (a / b);
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
@@ -196,14 +198,14 @@ DirectionPair leaf_directions(const TensorTree& tree, const TreeLeaf& leaf) noex
     const Vec3 travels = direction({x[0], x[1]});
     return {mirror(travels), direction({x[2], x[3]})};
   }
-  // the unused half of a cube that covers all of the axis is no part of it
+  // A cube that covers all of the axis has an unused half, which is no part of it.
   const double sine = 1 - 2 * (leaf.size > 0.5 ? 0.25 : x[0]);
   return {{-sine, 0, std::sqrt(1 - sine * sine)}, direction({x[1], x[2]})};
 }
 
 double leaf_weight(const TensorTree& tree, const TreeLeaf& leaf) noexcept {
   if (tree.rank == 4) return leaf.size * leaf.size * leaf.size * leaf.size;
-  // the projected solid angle of a ring goes with sin theta_i d sin theta_i
+  // The projected solid angle of a ring is proportional to sin theta_i d sin theta_i.
   const double sine = 1 - 2 * (leaf.size > 0.5 ? 0.25 : leaf.centre[0]);
   return leaf.size * leaf.size * leaf.size * sine;
 }
@@ -216,7 +218,7 @@ TensorTree tabulate_tree(BrdfRef source, int depth, double tolerance) {
     return (static_cast<double>(i) + 0.5) / static_cast<double>(along);
   };
 
-  // a slice of incident directions at a time
+  // The full grid is filled slice by slice of incident directions.
   std::vector<float> grid(side * side);
   for_each_chunk(side, 1, [&](std::size_t in, std::size_t, std::size_t) {
     for (std::size_t out = 0; out < side; ++out) {
