@@ -33,7 +33,7 @@ FileBytes read_file(const fs::path& path, std::uint64_t limit) {
 
 namespace {
 
-// What is replaced, in a folder that takes files: a link's target; no devices, pipes and folders.
+// Returns the file to replace, in a folder that takes files: a link's target; no devices, pipes and folders.
 fs::path replaced_file(const fs::path& given) {
   std::error_code ignored;
   const fs::path path = fs::is_symlink(given, ignored) ? fs::weakly_canonical(given, ignored) : given;

@@ -15,7 +15,7 @@ namespace burnish {
 
 namespace {
 
-// What `use` makes of the table or samples that a measurement is.
+// Returns what `use` makes of the table or samples that a measurement is.
 template <class Found, class Use>
 Found of_measurement(const Source& source, const Use& use) {
   return std::visit(

@@ -33,7 +33,7 @@ Json to_json(const NodeTable& table, const char* name) {
           {"values", table.values}};
 }
 
-// What differs between kinds of baselines in a file.
+// The parts of a file that differ between kinds of baselines.
 struct Parts {
   Json parameters, tables = Json::array();
 };

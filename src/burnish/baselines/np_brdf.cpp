@@ -34,7 +34,7 @@ NpDecoder::Inputs inputs_of(const DirectionPair& pair, const NpBrdf::Code& code)
   return inputs;
 }
 
-// What an output of the network stands for: it was trained on 1/0.15 of log(1 + x), four times over.
+// Decodes an output of the network, which was trained on 1/0.15 of log(1 + x), four times over.
 double decoded(float output) noexcept {
   constexpr int kTimes = 4;
   constexpr double kScale = 0.15, kMaxExponent = 700;  // exp(700) is still finite

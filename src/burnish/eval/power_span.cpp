@@ -13,7 +13,7 @@
 #ifndef BURNISH_EVAL_SHADE_ARGUMENTS
 #define BURNISH_EVAL_SHADE_ARGUMENTS
 namespace burnish {
-// What the Blinn-Phong kernels of all targets take.
+// The arguments of the Blinn-Phong kernels of all targets.
 struct ShadeArguments {
   const float *x, *y, *z;
   std::size_t count;

@@ -99,7 +99,7 @@ void ModelExport::add_shader(ShaderLanguage language) {
       {file, fmt::format("{} filter{}", filter_name, half ? ", half products" : ""), shader.cost});
 }
 
-// What generated shaders read.
+// Adds the textures that generated shaders read.
 void ModelExport::add_textures() {
   const Shader shader = generate_shader(brdf_, {.name = options_.name});
   for (std::size_t i = 0; i < shader.textures.size(); ++i) {

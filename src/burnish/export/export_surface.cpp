@@ -91,7 +91,7 @@ class SurfaceExport {
     return std::ranges::find(options_.to, target) != options_.to.end();
   }
 
-  // What a browser opens.
+  // Adds a page that a browser opens.
   void add_page(const char* kind, const char* ending, std::string text) {
     manifest_[kind] = options_.name + ending;
     result_.files.push_back({options_.name + ending, std::move(text)});

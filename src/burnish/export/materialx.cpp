@@ -44,7 +44,7 @@ std::string value_of(const Rgb& c) {
   return fmt::format("{}, {}, {}", c.r, c.g, c.b);
 }
 
-// What the code names a texture by, and the document's inputs and files: "tables", "volumes".
+// Returns the name of a texture in the code, in the document's inputs and in files: "tables", "volumes".
 std::string_view kind_of(const ShaderTexture& texture) noexcept {
   return texture.depth > 0 ? "volumes" : "tables";
 }

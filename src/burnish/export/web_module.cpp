@@ -24,7 +24,7 @@ json entry_of(const ShaderTexture& texture) {
           {"rgba16f", half_texels(texture.values, texture.channels)}};
 }
 
-// What all scripts read of a model.
+// Writes the part of a model that all scripts read.
 template <class Shader>
 json shared(const FactoredBrdf& brdf, const std::string& name, const Shader& shader) {
   json model{{"name", name},

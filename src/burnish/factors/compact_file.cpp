@@ -102,7 +102,7 @@ std::optional<Json> parse_notes(const std::string& text) {
   return std::nullopt;
 }
 
-/// What tables of one form, such as those of several lobes, have in common.
+/// The properties that tables of one form, such as those of several lobes, have in common.
 struct TableKind {
   TableLayout layout;
   TableFormat format = TableFormat::single;
@@ -122,7 +122,7 @@ std::vector<TableKind> kinds_of(std::span<const Table> tables) {
   return kinds;
 }
 
-/// What the factors of a lobe are looked up by, one projection an axis: lobes often differ in their tables
+/// The projections that the factors of a lobe are looked up by, one an axis: lobes often differ in their tables
 /// alone.
 using Product = std::vector<std::vector<Projection>>;
 
@@ -424,7 +424,7 @@ class CompactReader {
   std::size_t use_count_ = 0, factor_count_ = 0;
 };
 
-// What the reader refuses is not written.
+// Throws Error for a model that the reader would refuse.
 void check_writable(const Model& model, CompactContent content) {
   const auto check = [](const char* what, std::size_t count) {
     if (count > kMaxCompactItems)

@@ -7,7 +7,7 @@ namespace burnish {
 
 namespace {
 
-// What a lookup depends on: no more projections than its table has.
+// Returns the part of a use that a lookup depends on: no more projections than its table has.
 FactorUse read_of(FactorUse use, TableShape shape) {
   const int count = projection_count(shape);
   if (count < 2) use.projection_y = {};

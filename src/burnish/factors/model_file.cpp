@@ -86,7 +86,7 @@ class HeaderCheck {
   HeaderCheck(std::span<const std::byte> bytes, int longest)
       : bytes_(bytes), at_(kExrMagic.size()), longest_(longest) {}
 
-  /// Whether the first header has the attribute; the rest is not looked at.
+  /// Returns true if the first header has the attribute; the rest is not read.
   bool first_has(std::string_view attribute) {
     number<std::uint32_t>();  // version
     for (;;) {
@@ -251,7 +251,7 @@ ExrPart part_of(const Table& t) {
           .values = {}};
 }
 
-// Of the parts, without attributes of ours.
+// Returns the headers of the parts, without attributes of ours.
 std::vector<Imf::Header> headers(std::span<const ExrPart> parts) {
   std::vector<Imf::Header> result;
   // OpenEXR asks for one display window for all parts: the smallest that holds every part.

@@ -139,7 +139,7 @@ Json json_of(const NodesReport& report) {
   return json;
 }
 
-// What it costs to be rid of an SVD's negative values, in each of the usual ways.
+// Returns the cost of removing an SVD's negative values, in each of the usual ways.
 Json json_of(const NegativeLobes& lobes) {
   return {{"negative_share", lobes.negative_share},
           {"bias", lobes.bias},

@@ -174,7 +174,7 @@ std::string found_text(const Json& value) {
   return value.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, kLongest);
 }
 
-// What an option takes, after "expected".
+// Returns what an option takes, as text after "expected".
 std::string expected_value(const FitOption& option) {
   switch (option.takes) {
     case FitValue::flag:
@@ -299,14 +299,14 @@ std::optional<Json> kept(const FitOption& option, const Json& value) {
   return {};
 }
 
-// Whether a value says no more than leaving the option out.
+// Returns true if a value means the same as leaving the option out.
 bool says_nothing(const FitOption& option, const Json& value) {
   if (value.is_null()) return true;
   if (option.takes == FitValue::flag) return value == default_of_flag(option);
   return option.takes == FitValue::texts && value.is_array() && value.empty();
 }
 
-// What the options need and exclude, in the table's order, and the values that do not go together.
+// Checks what the options need and exclude, in the table's order, and the values that do not go together.
 void check_together(const Json& values, FitFront front) {
   for (const FitOption& option : option_rows()) {
     if (!values.contains(option.name)) continue;

@@ -14,7 +14,7 @@ bool is_constant(const Expr& x, double value) {
   return is_constant(x) && x.node()->constant == value;
 }
 
-// Of an operation that works componentwise.
+// Returns the type of an operation that works componentwise.
 ValueType type_of(Op op, const std::vector<Expr>& arguments) {
   if (op == Op::vector) return ValueType::vector;
   if (op == Op::to_integer) return ValueType::integer;

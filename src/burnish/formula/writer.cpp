@@ -8,7 +8,7 @@
 namespace burnish {
 namespace {
 
-// How tightly operators bind.
+// The precedence of operators.
 constexpr int kChoice = 0, kSum = 1, kProduct = 2, kCall = 3;
 
 }  // namespace
@@ -55,7 +55,7 @@ bool Writer::is_half(const Graph::Node& node) const {
   return std::ranges::any_of(node.arguments, [&](std::size_t a) { return half_[a]; });
 }
 
-// What costs nothing to say again is said again.
+// A value that costs nothing is written again; any other that is used twice becomes a local.
 bool Writer::is_local(std::size_t i) const {
   const Graph::Node& node = graph_.nodes()[i];
   if (node.op == Op::constant || node.op == Op::input || node.op == Op::component) return false;
@@ -108,7 +108,7 @@ std::vector<std::string> Writer::arguments(std::size_t i) const {
   return all;
 }
 
-/// Of a texture.
+/// Writes the read of a texture.
 std::string Writer::read(std::size_t i) const {
   const Graph::Node& node = graph_.nodes()[i];
   const std::string texel = node.op == Op::texel ? language_.fetch(node.name, arguments(i), node.type)

@@ -67,7 +67,7 @@ std::string camel(std::string_view name) {
   return text;
 }
 
-// Of a module.
+// A port of a module.
 struct Port {
   std::string_view name;
   int width;

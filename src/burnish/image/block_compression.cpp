@@ -19,7 +19,7 @@ constexpr std::size_t kTexels = 16, kCodes = 8, kChannelBytes = 8, kBlockBytes =
 
 using Values = std::array<float, kTexels>;
 
-/// What the codes of a block stand for, in steps of its integers.
+/// The values that the codes of a block stand for, in steps of its integers.
 class Palette {
  public:
   Palette(int first, int second, bool has_sign) : first_(first), second_(second) {
@@ -39,7 +39,7 @@ class Palette {
   int first() const noexcept { return first_; }
   int second() const noexcept { return second_; }
   float operator[](std::size_t code) const noexcept { return steps_[code]; }
-  /// How much of `second` a code has; nothing of codes that have a value of their own.
+  /// Returns the share of `second` in a code; nothing for codes that have a value of their own.
   float share(std::size_t code) const noexcept {
     if (code < 2) return static_cast<float>(code);
     return static_cast<float>(code - 1) / (first_ > second_ ? 7.0f : 5.0f);

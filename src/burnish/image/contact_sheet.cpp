@@ -108,7 +108,7 @@ Image8 heat_map(const Image& values, double scale) {
 
 namespace {
 
-// Where everything of a sheet lies, in pixels: the title, the headings, then the rows.
+// The positions of a sheet's parts, in pixels: the title, the headings, then the rows.
 struct SheetLayout {
   std::vector<int> widths, heights;  // of columns and rows
   double row_label_width = 0;

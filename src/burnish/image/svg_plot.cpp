@@ -61,7 +61,7 @@ double round_step(double span, int count) {
   return power * (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10);
 }
 
-// What values a side of the frame spans.
+// The values that a side of the frame spans.
 struct PlotScale {
   double low = 0, high = 1;
   bool logarithmic = false;

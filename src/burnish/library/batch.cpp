@@ -125,8 +125,8 @@ class Batch::State {
   std::vector<std::thread> workers_;
 };
 
-/// What a material takes of the memory, and of the threads while it is fitted. All that it may come to is reserved
-/// before it is opened, since only then is it known whether it is isotropic.
+/// The share of the memory that a material takes, and of the threads while it is fitted. The most that it may need is
+/// reserved before it is opened, since only then is it known whether it is isotropic.
 class Batch::State::MemoryShare {
  public:
   MemoryShare(State& state, std::uint64_t input)

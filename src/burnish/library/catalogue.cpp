@@ -49,7 +49,7 @@ std::string base64url(std::string_view bytes) {
   return text;
 }
 
-// What a link carries of a model; empty where it cannot.
+// Returns the part of a model that a link carries; empty where it cannot.
 std::string link_of(const fs::path& folder, const MaterialRecord& record) {
   const fs::path path = folder / record.files.front().path;
   if (path.extension() == ".json") return {};

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Where process numbers mean the same: this start of this machine, and this container.
+// Returns the space in which process numbers mean the same: this start of this machine, and this container.
 std::string process_space() {
   std::string boot;
   std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), boot);
@@ -81,9 +81,9 @@ fs::path Claims::file(const std::string& name, int generation) const {
   return folder_ / fmt::format("{}.{}", name, generation);
 }
 
-// Whether the file was made. It is written through what was opened, since the folder may be moved in this moment: a
-// claim without its lines is of someone who may live. Who is killed before they are written is not known to be gone,
-// only silent.
+// Makes the file and returns true if it was made. It is written through the opened descriptor, since the folder may
+// be moved in this moment: a claim without its lines belongs to a process that may live. A process that is killed
+// before it writes them is not known to be gone, only silent.
 bool Claims::make(const fs::path& path) const {
   const std::string process = std::to_string(::getpid());
   return write_new_durably(

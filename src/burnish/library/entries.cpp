@@ -41,7 +41,7 @@ std::string safe_name(std::string_view text) {
   return name.empty() ? "material" : name;
 }
 
-// What stands behind the # of nbrdf:FILE#NAME, an analytic BRDF, or a file's name without its ending.
+// Returns the text behind the # of nbrdf:FILE#NAME, an analytic BRDF, or a file's name without its ending.
 std::string name_of(const std::string& argument) {
   if (is_analytic_spec(argument)) return safe_name(argument);
   const bool has_address =
@@ -61,7 +61,7 @@ std::vector<LibraryEntry> told_apart(std::vector<LibraryEntry> entries) {
   return entries;
 }
 
-// Whether a batch worked in the folder: it has models, and lines about them.
+// Returns true if a batch worked in the folder: it has models, and lines about them.
 bool is_library(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder / "models", error)) return false;
@@ -78,7 +78,7 @@ bool is_one_of(const fs::path& path, const std::vector<fs::path>& others) {
   });
 }
 
-// Whether a file of a folder is meant as a material: by a name that nothing else has, or by what it holds.
+// Returns true if a file of a folder is meant as a material: by a name that nothing else has, or by its content.
 bool is_material(const fs::path& path) {
   constexpr std::array<std::string_view, 8> kEndings = {
       ".binary", ".bsdf", ".brdf", ".mbsdf", ".astm", ".xompt", ".anisotropicbsdf", ".burnish"};

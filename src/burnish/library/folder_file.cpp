@@ -29,7 +29,7 @@ int write_all(int descriptor, std::string_view bytes) {
   return 0;
 }
 
-// What was opened, which is closed whatever happens, and the file is removed where it cannot be written.
+// Writes to the opened file and closes it in any case; the file is removed where it cannot be written.
 void write_and_close(int descriptor, const fs::path& path, std::string_view bytes) {
   int code = write_all(descriptor, bytes);
   if (code == 0 && ::fdatasync(descriptor) != 0) code = errno;

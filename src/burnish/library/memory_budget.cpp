@@ -35,7 +35,8 @@ std::uint64_t available(const fs::path& root) {
   return kNoLimit;
 }
 
-// Of a group and of those that it is in. In a container the path may begin outside, and then only its end is there.
+// Returns the least limit of a group and of the groups that it is in. In a container the path may begin outside, and
+// then only its end is there.
 std::uint64_t limit_of_groups(const fs::path& mount, const std::string& group, std::string_view file) {
   std::uint64_t least = kNoLimit;
   for (fs::path below = fs::path(group).relative_path();; below = below.parent_path()) {

@@ -93,8 +93,8 @@ DirectionalAlbedo integrate(BrdfRef source, Vec3 wi, std::size_t ring_count) {
   return result;
 }
 
-/// Whether no channel differs by more than `tolerance` of it or of the channels' mean: negative values may take one to
-/// 0.
+/// Returns true if no channel differs by more than `tolerance` of it or of the channels' mean: negative values may
+/// take one to 0.
 bool agree(std::span<const double> a, std::span<const double> b, double tolerance) {
   const double mean = std::accumulate(a.begin(), a.end(), 0.0) / static_cast<double>(a.size());
   for (std::size_t c = 0; c < a.size(); ++c)

@@ -46,7 +46,7 @@ class Shading {
     brdf_.eval(pairs_, values_, known_);
     for (std::size_t i = 0; i < values_.size(); ++i) values_[i] *= std::max(pairs_[i / channels()].wi.z, 0.0);
   }
-  // Of normal i of the last run.
+  // Returns the value at normal i of the last run.
   std::span<const double> value(std::size_t i) const noexcept {
     return std::span(values_).subspan(i * channels(), channels());
   }

@@ -53,7 +53,7 @@ std::optional<Projection> swapped(const Projection& p, bool azimuth) noexcept {
 
 namespace {
 
-// What projections are called; an angle's name stands for a direction whose azimuth is of no concern.
+// The names of projections. An angle's name stands for a direction whose azimuth does not matter.
 struct Name {
   std::string_view text;
   Projection projection;

@@ -12,7 +12,7 @@ SymmetrizedBrdf::SymmetrizedBrdf(BrdfRef source) : source_(source) {
 
 namespace {
 
-// Of both orders of a pair: the mean, or the one that is known.
+// Joins both orders of a pair: takes the mean, or the one that is known.
 bool join_orders(std::span<double> f, bool known, std::span<const double> swapped,
                  bool swapped_known) noexcept {
   if (known && swapped_known)

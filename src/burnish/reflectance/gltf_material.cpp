@@ -27,8 +27,8 @@ double schlick(double f0, double cosine) noexcept {
   return fresnel_schlick(f0, cosine).r;
 }
 
-/// What an order of interference adds, of unit amplitude: X, Y and Z turned by the phases of the base's channels, as the
-/// text has it, in linear Rec. 709.
+/// Returns what an order of interference of unit amplitude adds: X, Y and Z turned by the phases of the base's
+/// channels, as the text has it, in linear Rec. 709.
 std::array<double, 3> interference(double phase, const std::array<double, 3>& turned) noexcept {
   std::array<double, 3> xyz{};
   for (const auto& [i, value, position, variance] : kFilmResponses)

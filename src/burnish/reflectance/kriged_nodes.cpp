@@ -138,7 +138,7 @@ TreePoint place_of(Vec3 wi, Vec3 wo, bool isotropic) noexcept {
     const double phi_d = angles.theta_h < kUpright ? 0 : std::abs(std::remainder(angles.phi_d, kPi));
     return {half, difference, std::sin(angles.theta_d) * phi_d / kHalfPi, 0};
   }
-  // Where h is the normal, only the sum of the azimuths is defined. Doubling it makes the coordinates even in the
+  // Only the sum of the azimuths is defined if h is the normal. Doubling it makes the coordinates even in the
   // exchange.
   const double turn = 2 * (angles.phi_h + angles.phi_d);
   return {half * std::cos(angles.phi_h), half * std::sin(angles.phi_h), difference * std::cos(turn),

@@ -118,7 +118,7 @@ class Pixels {
   int width_, height_;
 };
 
-// Where a pixel's ray meets a surface.
+// Returns the place where a pixel's ray meets a surface.
 SpatialBrdf::Place place_of(const SpatialBrdf& surface, const Mesh& mesh, const SurfaceHit& hit, Vec3 eye,
                             const Pixels& pixels, int x, int y) noexcept {
   std::array<const Vertex*, 3> corners{};
@@ -147,7 +147,7 @@ void turn(SurfacePoint& point, const ShadingFrame& frame) noexcept {
   point.normal = normal;
 }
 
-// What of materials is the same all over: BRDFs, of surfaces their mean.
+// The part of materials that is the same all over: BRDFs, and the means of surfaces.
 struct MaterialMeans {
   std::vector<FactoredBrdf> models;
   std::vector<BrdfRef> refs;

@@ -137,7 +137,7 @@ std::string nodes_row(std::string_view name, const NodeFigures& figures) {
                                    {"RMS", fmt::format("{:.4g}", figures.rms)}});
 }
 
-// What the models score where something was measured.
+// Writes the models' scores at the measured nodes.
 std::string nodes_html(const Measurement& measurement, std::span<const ComparedFigures> compared) {
   const auto& quality = measurement.quality;
   std::string rows = nodes_row("the reference, made reciprocal", measurement.itself);

@@ -25,7 +25,7 @@ std::vector<double> angles_of(double exponent) {
   return angles;
 }
 
-// What lies outside is left out of the drawing.
+// Returns the value, or not-a-number outside the range, so that it is left out of the drawing.
 double within(double value, double low, double high) {
   return value >= low && value <= high ? value : std::nan("");
 }

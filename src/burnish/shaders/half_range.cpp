@@ -61,7 +61,7 @@ std::vector<double> logs_of(const FactoredBrdf& brdf, std::vector<double> scale,
   return logs;
 }
 
-// How far products leave the range: above it where f_r is within it, below where it is not dark.
+// Returns how far products leave the range: above it where f_r is within it, below where it is not dark.
 double excess(const std::vector<double>& products, const std::vector<double>& factor,
               const std::vector<double>& whole) noexcept {
   double sum = 0;

@@ -21,13 +21,13 @@ Expr read_expression(const MapComponent& place) {
   return Expr::input(fmt::format("{}.{}", local_of(place.texture), "xyzw"[place.component]));
 }
 
-/// What a place holds, by the components that are read: names and values.
+/// The members of a place, by the components that are read: names and values.
 struct PlaceMember {
   std::string name;
   Expr value;
 };
 
-// As frame_about: normal and tangent of the surface's plane, the tangent made orthogonal.
+// Computes as frame_about does: normal and tangent of the surface's plane, the tangent made orthogonal.
 std::vector<PlaceMember> frame_members(const PackedMaps& maps) {
   Expr nx = 0.0, ny = 0.0, nz = 1.0, tx = 1.0, ty = 0.0;
   if (maps.normals) {

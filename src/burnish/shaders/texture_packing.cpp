@@ -17,7 +17,7 @@ namespace burnish {
 namespace {
 
 constexpr int kMaxTextureSide = 16384;
-// Where a texture is wider than its widest table, others stand beside it.
+// Tables stand side by side up to this width, where a texture is wider than its widest table.
 constexpr int kMaxPackedWidth = 4096;
 
 // Along an axis: where a table's nodes are, and how far its edges are repeated.

@@ -35,7 +35,7 @@ double scaled_bessel(double x) noexcept {
   return sum(kFar, kBorder / x) / std::sqrt(x);
 }
 
-/// What a lobe is over tan(theta_h), the mean of some directions, and what slopes of a variance make of it.
+/// The profile of a lobe over tan(theta_h), the mean of some directions, and its blur by slopes of a variance.
 class Profile {
  public:
   explicit Profile(const FactoredBrdf& lobe) {

@@ -37,7 +37,7 @@ Moments moments_of(const SurfaceMap& weights, const SurfaceMap& normals, int x, 
   return moments;
 }
 
-/// Of every texel of a level, `finer` those of the level before, which level 0 does without.
+/// Returns the moments of every texel of a level. `finer` are those of the level before, which level 0 does without.
 std::vector<Moments> moments_of_level(const SurfaceMap& weights, const SurfaceMap& normals, std::size_t level,
                                       std::span<const Moments> finer) {
   const int width = weights.level_width(level), height = weights.level_height(level),
@@ -62,14 +62,15 @@ std::vector<Moments> moments_of_level(const SurfaceMap& weights, const SurfaceMa
   return all;
 }
 
-/// Of the weights, about a normal and along each axis.
+/// Returns the variance of the weights, about a normal and along each axis.
 double variance_about(const Moments& m, double mean, const SurfaceMap::Value& normal) noexcept {
   const double nx = static_cast<double>(normal[0]), ny = static_cast<double>(normal[1]);
   if (!(mean > 0)) return 0;
   return std::max(0.0, 0.5 * ((m.square - 2 * (nx * m.x + ny * m.y)) / mean + nx * nx + ny * ny));
 }
 
-/// How much of a weight goes to variance `of`, the others being at `below` and `above`: a hat, flat beyond the last.
+/// Returns the share of a weight that goes to variance `of`, the others being at `below` and `above`: a hat, flat
+/// beyond the last.
 double share_of(double variance, double below, double of, std::optional<double> above) noexcept {
   if (variance <= of) return of > below ? std::max(0.0, (variance - below) / (of - below)) : 1;
   return above ? std::max(0.0, (*above - variance) / (*above - of)) : 1;

@@ -94,7 +94,7 @@ double measure(const TableLayout& layout, const std::array<double, 3>& place) {
                                           : flat * axis_measure(layout.warp_z, place[2] / (layout.depth - 1));
 }
 
-// What of a level's texel belongs to each of the level above that it is cut from, along one axis.
+// The part of a level's texel that belongs to each texel of the level above that it is cut from, along one axis.
 struct LevelShare {
   int from, to;
   double share;

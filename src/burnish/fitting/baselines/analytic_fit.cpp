@@ -154,7 +154,7 @@ class Cost {
     return x;
   }
 
-  /// As LeastSquaresProblem::evaluate.
+  /// Evaluates as LeastSquaresProblem::evaluate says.
   void evaluate(std::span<const double> varied, std::span<double> residuals, std::span<double> jacobian) {
     std::vector<double> x = all(varied);
     if (x != evaluated_at_) {  // slopes are asked for where values were

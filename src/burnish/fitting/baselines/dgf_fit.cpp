@@ -19,7 +19,7 @@ namespace {
 constexpr double kSmooth = 1e-3;  // of F and G
 constexpr int kMaxD = 180, kMaxFg = 90, kMinNodes = 4;
 
-/// Where a sample touches a table: node and node + 1, and the weight of the second.
+/// The nodes of a table that a sample touches: node and node + 1, with the weight of the second.
 struct Touch {
   std::uint16_t node;
   float fraction;
@@ -31,7 +31,7 @@ Touch touch(int count, double u) {
   return {static_cast<std::uint16_t>(node), static_cast<float>(position - node)};
 }
 
-/// What the four lookups of a sample touch, and the divisor of f.
+/// The nodes that the four lookups of a sample touch, and the divisor of f.
 struct Places {
   std::vector<Touch> d, f, gi, go;
   std::vector<double> divisor;
@@ -175,7 +175,7 @@ class ChannelFit {
   Line d, g, f;
 };
 
-/// Where the samples fall in tables of so many nodes.
+/// Returns the places of the samples in tables of these sizes.
 Places places_in(const GatheredSamples& samples, int size_d, int size_fg) {
   Places places;
   for (const auto& [wi, wo] : samples.pairs) {

@@ -141,7 +141,7 @@ namespace {
 
 // ---- the search for a layout ----
 
-/// How coordinates are split between rows and columns; one axis' size follows from the budget.
+/// The split of coordinates between rows and columns; one axis' size follows from the budget.
 struct Split {
   std::vector<PairCoordinate> rows, columns;
 };

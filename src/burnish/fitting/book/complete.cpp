@@ -25,20 +25,20 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 constexpr std::size_t kColours = MaterialBook::kAxes, kRgb = MaterialBook::kChannels;
 constexpr std::size_t kEvidencePairs = 150;  // by which the prior is chosen
 
-// What is tried: near one of the library's materials, or near their mean, where far out is allowed.
+// The priors that are tried: near one of the library's materials, or near their mean, where far out is allowed.
 constexpr std::array kNearSpreads = {0.1, 0.2, 0.4, 0.7}, kMeanSpreads = {1.0, 2.0, 4.0, 8.0};
 constexpr std::array kResiduals = {0.3, 3.0, 30.0, 300.0};
 constexpr std::array kNoises = {1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3};
 
-// What is believed is the mean of all that is at least so likely beside the likeliest.
+// The result is the mean of all priors that are at least this likely beside the likeliest.
 constexpr double kMinShare = 0.01;
 
-// Where one direction is near the horizon measurements are less certain: variances are 1 + (this / cosine)^2 times as
+// Measurements are less certain where one direction is near the horizon. Variances are 1 + (this / cosine)^2 times as
 // large, as those of scans of RGL materials about a smooth reciprocal volume are.
 constexpr double kGrazingCosine = 0.3, kMinPairCosine = 1e-3;
 
-// How far what is not in the book reaches: along sqrt(theta_h / (pi/2)), theta_d / (pi/2) and
-// |cos theta_i - cos theta_o| / 2; a third each of it so many times as far.
+// Lengths of the part that is not in the book, along sqrt(theta_h / (pi/2)), theta_d / (pi/2) and |cos theta_i - cos
+// theta_o| / 2. Thirds of it have these lengths times different factors.
 constexpr std::array kReach = {0.15, 0.25, 0.25};
 constexpr std::array kReaches = {0.7, 2.0, 6.0};
 
@@ -171,7 +171,7 @@ Eigen::LLT<MatrixXd> factored(const PairData& data, std::size_t u, const Complet
   return Eigen::LLT<MatrixXd>(std::move(covariance));
 }
 
-/// How likely pairs are by a prior, of one material each where it is near one: logarithms less a constant.
+/// Returns how likely pairs are under a prior, for each material where it is near one: logarithms less a constant.
 VectorXd log_evidences(const PairData& data, std::size_t u, const CompletionPrior& prior) {
   const AxisData& axis = data.axes[u];
   const Eigen::LLT<MatrixXd> llt = factored(data, u, prior);
@@ -226,7 +226,7 @@ std::vector<Belief> beliefs_of(const PairData& data, AxisGroup group, double par
   return beliefs;
 }
 
-/// What the pairs say of one axis: weights, and what is not in the book, as a sum of likenesses to the pairs.
+/// The posterior of one axis: weights, and the part that is not in the book, as a sum of covariances with the pairs.
 struct AxisMean {
   VectorXd weights;
   VectorXd beyond;
@@ -264,8 +264,8 @@ AxisGiven mean_given(const PairData& data, std::size_t u, const CompletionPrior&
           .certainty = inverse};
 }
 
-/// What pairs that are left out are taken for. A prior or a material that saw the pair counts for what it did without
-/// it: its share is divided by how likely it made this pair given the others.
+/// Predicts pairs that are left out. A prior or a material that saw the pair counts as it would without it: its share
+/// is divided by how likely it made this pair given the others.
 class LeftOut {
  public:
   LeftOut(std::size_t axes, Eigen::Index pairs)

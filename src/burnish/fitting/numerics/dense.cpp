@@ -23,7 +23,7 @@ namespace burnish {
 
 namespace {
 
-// What lies row by row is, column by column, the transpose.
+// A matrix that lies row by row is, column by column, its transpose.
 Eigen::MatrixXd products(const char* transpose, Eigen::Index size, Eigen::Index inner,
                          const Eigen::Ref<const RowMajorMatrix>& a) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);

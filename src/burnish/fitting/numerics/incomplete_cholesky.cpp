@@ -163,7 +163,7 @@ bool IncompleteCholesky::factorize(const SparseTriangle& matrix) {
     for (int at = dense_start(i); at < starts[i + 1]; ++at)
       complement(i - first, column[at] - first) = (column[at] == i ? 1 + share_ : 1) * matrix.valuePtr()[at];
   }
-  // Where that is not positive, B is coupled less: c B B^T with c < 1 leaves a larger complement.
+  // If that is not positive, B is coupled less: c B B^T with c < 1 leaves a larger complement.
   const Eigen::MatrixXd products = products_of_rows(before), diagonal = complement;
   double coupling = 1;
   for (;; coupling = coupling > kMinCoupling ? kLessCoupling * coupling : 0) {

@@ -66,7 +66,7 @@ LogRows RowMaker::make(std::size_t begin, std::size_t end) const {
 
 double RowMaker::emphasis(const DirectionPair& pair) const noexcept {
   if (backscatter <= 0) return 1;
-  // Of n samples spread evenly around wi = wo, the number within theta_d grows with its square. That of each step of
+  // The number of evenly spread samples within theta_d of wi = wo grows with its square. The number in each step of
   // sqrt(theta_d) grows with its power of 1.5, so the weight is its inverse.
   const double share = angle_between(pair.wi, pair.wo) / 2 / backscatter;
   return share < 1 ? std::pow(std::max(share, kNearest), -1.5) : 1;

@@ -17,7 +17,7 @@ namespace {
 constexpr FitEffort kTaste{6, 1e-4, 1e-4}, kSift{15, 1e-5, 1e-5}, kFirst{30, 1e-5, 1e-5},
     kAgain{20, 1e-6, 1e-6}, kEnd{60, 1e-8, 1e-6};
 
-/// What is varied or left out together: the core material, or an extension.
+/// Inputs that are varied or left out together: the core material, or an extension.
 enum Layer : std::uint8_t { kCore, kIor, kSpecular, kGrain, kFilm, kSheen, kCoat, kLayers };
 using Layers = std::bitset<kLayers>;
 

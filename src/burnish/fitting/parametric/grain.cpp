@@ -15,7 +15,7 @@ constexpr int kAzimuthStep = 5;     // degrees
 constexpr double kMinGrain = 0.02;  // of what is reflected, that goes about with the direction
 constexpr double kAxisReach = 3;    // degrees
 
-/// What half vectors reflect that lean to both sides at an azimuth; nothing where none of them is known.
+/// Returns f at half vectors that lean to both sides at an azimuth; nothing where none of them is known.
 std::optional<double> reflected(BrdfRef source, double phi) {
   double sum = 0;
   bool known = false;

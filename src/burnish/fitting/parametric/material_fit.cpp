@@ -66,7 +66,7 @@ Json json_of(const OpenPbrParameters& p) {
   return json;
 }
 
-/// What is reported about a fit.
+/// Returns the report of a fit.
 Json report_of(const MaterialFit& fit) {
   Json json{{"target", fit.target}, {"source", fit.source}};
   json.update(json_of(fit.figures));

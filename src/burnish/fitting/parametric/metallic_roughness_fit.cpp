@@ -22,7 +22,7 @@ MetallicRoughness material_of(const Point& p) {
   return {{p[0], p[1], p[2]}, p[3], std::max(p[4], 0.03), std::abs(p[5]), p[5] < 0};
 }
 
-/// What pictures of a material are short of, mean squared: the three lit spheres, at the exposure of the BRDF's.
+/// The mean squared error of pictures of a material: the three lit spheres, at the exposure of the BRDF's.
 class SphereError {
  public:
   explicit SphereError(BrdfRef brdf) {

@@ -27,7 +27,7 @@ struct Unknown {
 /// Inputs that keep their values, one bit each.
 using Inputs = std::bitset<kOpenPbrInputs.size()>;
 
-/// Those whose names begin so.
+/// Returns the inputs whose names begin so.
 Inputs inputs_named(std::string_view beginning) {
   Inputs named;
   for (std::size_t i = 0; i < kOpenPbrInputs.size(); ++i)
@@ -37,7 +37,7 @@ Inputs inputs_named(std::string_view beginning) {
 
 const Inputs kCoat = inputs_named("coat"), kFuzz = inputs_named("fuzz"), kFilm = inputs_named("thin_film");
 
-/// What a fit never varies.
+/// Returns the inputs that a fit never varies.
 Inputs always_held(const OpenPbrFitOptions& options) {
   Inputs held = inputs_named("base_weight") | inputs_named("geometry_tangent");
   if (!options.anisotropic)
@@ -245,8 +245,9 @@ std::vector<Trial> search_at_random(Search& search, int count, std::uint64_t see
 constexpr std::size_t kKept = 2;  // trials that are built upon
 constexpr std::size_t kEnds = 4;  // and that go to their ends
 
-/// Where to go on: the best of the base alone and below coats, of films, and of random starts, which are sifted on a
-/// twelfth and then a third of the pixels, so that their costs are no measure of the others.
+/// Returns the starts from which the search continues: the best of the base alone and below coats, of films, and of
+/// random starts. Random starts are compared on a twelfth and then a third of the pixels, so their costs cannot be
+/// compared with the others.
 std::vector<Search::Start> search_layers(Search& search, Search& sift, const PicturePairs& pairs,
                                          const OpenPbrFitOptions& options,
                                          const std::function<void(double)>& progress) {

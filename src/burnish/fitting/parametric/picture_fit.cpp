@@ -11,7 +11,7 @@ namespace burnish {
 
 namespace {
 
-// Of the pictures at 1/32 of the exposure.
+// Weight of the pictures at 1/32 of the exposure.
 constexpr double kDimmedShare = 0.05;
 
 // Relative errors, of ln(f + floor): at most a tenth of the whole where pictures differ visibly, but what tells where
@@ -41,7 +41,7 @@ class Cost {
   /// One a channel of a pixel, one for what is left of them, one a number.
   std::size_t functions() const { return pairs_.shown.size() + 1 + material_.numbers.size(); }
 
-  /// As LeastSquaresProblem::evaluate.
+  /// Evaluates as LeastSquaresProblem::evaluate says.
   void evaluate(std::span<const double> x, std::span<double> values, std::span<double> slopes) {
     const std::vector<Step> steps = slopes.empty() ? std::vector<Step>() : steps_from(x);
     const MaterialsEval eval = material_.at(points(x, steps));
@@ -130,7 +130,7 @@ class Cost {
     return {along, std::sqrt(std::max(squares - along * along, 0.0)), length};
   }
 
-  /// Of both exposures: the root of the error's weight, and what the exposure makes of a pixel.
+  /// For both exposures, the root of the error's weight, and the factor of a pixel.
   static inline const std::array<double, 2> kShares = {1, std::sqrt(kDimmedShare)},
                                             kDims = {1, std::pow(1.0 / 32, PictureLoss::kInverseGamma)};
 

@@ -44,7 +44,7 @@ double metal_of(int step) {
 /// (1 - m) gloss + m edge. Which of a roughness's functions stands where.
 enum Part { kDiffuse, kMetal, kGloss, kEdge, kParts };
 
-/// What texels need of one roughness.
+/// The products that texels need of one roughness.
 struct Products {
   std::array<std::array<double, kParts>, kParts> own;
   std::vector<std::array<double, 3 * kParts>> lobes;  ///< [lobe][part][channel]
@@ -101,7 +101,8 @@ class Fitter {
     typical_ = nearest(typical);
   }
 
-  /// Of one texel's weights. Two materials may be as near: the more alike to the typical one is taken.
+  /// Finds the material of one texel's weights. Of two equally near materials, the one more like the typical one is
+  /// taken.
   Found nearest(const TexelWeights& weights) const {
     std::array<double, 3> square{};
     for (std::size_t k = 0; k < lobes_.size(); ++k)

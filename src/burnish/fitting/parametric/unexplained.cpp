@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFloor = 1e-3;  // 1/sr, of ratios of values
 
-/// What both show.
+/// The values of both.
 struct Seen {
   Rgb source, material;
 };
@@ -85,7 +85,7 @@ DirectionPair level_pair(double theta_h, double phi_h, double theta_d) {
   return {along + aside, along - aside};
 }
 
-/// Of the rises as theta_h grows, source over material.
+/// Returns the ratio of the greatest rises as theta_h grows, source over material.
 std::optional<double> rings(BrdfRef source, BrdfRef material) {
   Rise of_source, of_material;
   bool known = false;

@@ -23,7 +23,7 @@ struct Part {
 void add_pictures(const PictureLoss& loss, const ErrorTerms& derivatives, V target, V lit, V weight,
                   Part& part) {
   const D d;
-  // As PictureLoss::add for pixels: (exposure f cos theta_i)^(1/2.2) by logarithm and exponential.
+  // This is PictureLoss::add for pixels: (exposure f cos theta_i)^(1/2.2) by logarithm and exponential.
   const V one = number(1), gamma = number(PictureLoss::kInverseGamma);
   const V shown = hn::Max(hn::Mul(lit, number(loss.exposure)), number(1e-30));
   const V modelled = hn::Exp(d, hn::Mul(gamma, hn::Log(d, shown)));
@@ -35,7 +35,7 @@ void add_pictures(const PictureLoss& loss, const ErrorTerms& derivatives, V targ
     const double derivative = e == 0 ? derivatives.pictures : derivatives.dimmed;
     const V share = hn::Mul(weight, number(e == 0 ? 1 : 0.5)), slope = hn::Mul(share, number(2 * derivative));
     const auto white = hn::Gt(b, one);
-    // Where both are white, dimmer exposures tell them apart.
+    // If both are white, dimmer exposures tell them apart.
     const V rise =
         hn::IfThenZeroElse(hn::And(hn::Ge(b, one), hn::Ge(a, one)),
                            hn::Mul(gamma, hn::IfThenElse(white, number(PictureLoss::kSaturatedSlope), b)));
@@ -57,7 +57,7 @@ void add_absolute(V error, V rise, double round, V weight, double derivative, V&
 
 void add_pairs(const ErrorTerms& derivatives, V first, V second, V model, V lit, V weight, Part& part) {
   const D d;
-  // As PictureLoss::add for pairs: the errors of ln(f + 1e-3), of ln(1 + f cos theta_i) and of f.
+  // This is PictureLoss::add for pairs: the errors of ln(f + 1e-3), of ln(1 + f cos theta_i) and of f.
   const V raised = hn::Add(model, number(PictureLoss::kFloor)), brighter = hn::Add(lit, number(1));
   add_absolute(hn::Sub(hn::Log(d, raised), first), hn::Div(model, raised), PictureLoss::kRelativeRound,
                weight, derivatives.relative, part.relative, part);

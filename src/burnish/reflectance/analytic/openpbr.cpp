@@ -17,7 +17,8 @@ namespace {
 // Least cosine, roughness and loss, as MaterialX has it.
 constexpr double kEpsilon = 1e-8;
 
-// What the formulas need of a number type T: double, the definition, or Expr. Parameters are doubles in both.
+// The formulas need these functions of a number type T: double, the definition, or Expr. Parameters are doubles in
+// both.
 
 using std::acos;
 using std::clamp;
@@ -112,7 +113,7 @@ double reflectance_of_ior(double ior) noexcept {
   return square((ior - 1) / (ior + 1));
 }
 
-/// Of a dielectric, for unpolarized light. Domain: cosine in (0, 1], ior >= 1.
+/// Returns the reflectance of a dielectric for unpolarized light. Domain: cosine in (0, 1], ior >= 1.
 template <class T>
 T fresnel(const T& cosine, double ior) {
   const T c = cosine, g = named("g", sqrt(ior * ior + c * c - 1));
@@ -139,7 +140,7 @@ struct FacetAlbedo {
   }
 };
 
-// What follows is the thin film of [Belcour 2017].
+// The following is the thin film of [Belcour 2017].
 
 /// Reflectance of the two polarizations.
 template <class T>
@@ -235,7 +236,7 @@ T fujii_albedo(const T& cosine, double roughness) {
   return (1 + roughness * g / kPi) / (1 + kFujii1 * roughness);
 }
 
-/// What an albedo leaves of 1.
+/// Returns the rest that an albedo leaves of 1.
 template <class T>
 T lost(const T& albedo) {
   return max(T(kEpsilon), 1 - albedo);
@@ -274,7 +275,7 @@ struct OpenPbr::Highlight {
   T value = 0.0;
   FacetAlbedo<T> albedo;
 
-  /// What multiple reflections between facets give back, as a factor [Turquin 2019, eq. 14, 16].
+  /// Returns the factor by which multiple reflections between facets restore energy [Turquin 2019, eq. 14, 16].
   Color<T> compensation(const Color<T>& fresnel) const {
     const T single = albedo.scale + albedo.bias;
     return 1 + (1 - single) / single * fresnel;
@@ -470,7 +471,7 @@ OpenPbr::PartSet OpenPbr::needed() const noexcept {
   return parts;
 }
 
-/// What the other's parts do not serve.
+/// Returns the parts that the other's cannot serve.
 OpenPbr::PartSet OpenPbr::needed_beside(const OpenPbr& other) const noexcept {
   const auto differ = [&](auto... members) { return (... || (p_.*members != other.p_.*members)); };
   using P = OpenPbrParameters;

@@ -72,7 +72,7 @@ std::vector<EGLDeviceEXT> gpus() {
 
 }  // namespace
 
-// Whether one of EGL's GPUs serves.
+// Opens one of EGL's GPUs; returns false if none serves.
 bool GlContext::open_gpu() {
   for (const EGLDeviceEXT gpu : gpus()) try {
       display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, gpu, nullptr);
@@ -83,7 +83,7 @@ bool GlContext::open_gpu() {
   return false;
 }
 
-// Whether Mesa is there. Throws Error if it is, without OpenGL 4.5.
+// Opens Mesa; returns false if it is missing. Throws Error if it is there without OpenGL 4.5.
 bool GlContext::open_mesa() {
   if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")) return false;
   display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);

@@ -10,7 +10,7 @@ namespace burnish {
 
 namespace {
 
-// How texels are stored, and what comes in.
+// The storage of texels, and the format of the input.
 struct TexelFormat {
   GLenum stored, layout, type;
 };

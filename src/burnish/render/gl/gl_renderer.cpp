@@ -46,7 +46,7 @@ std::array<float, 16> projection_of(const Scene& scene, int width, int height) {
 }  // namespace
 
 struct GlRenderer::State {
-  // As the shader's uniform block has it.
+  // The layout of the shader's uniform block.
   struct LightEntry {
     float place[4], intensity[4];
   };

@@ -23,7 +23,7 @@ void store(Rgb value, std::span<float> texel) noexcept {
   texel[2] = static_cast<float>(value.b);
 }
 
-// What is not a disc, as a picture.
+// Returns the part of the environment that is no disc, as a picture.
 SkyImage sky_of(const Environment& environment) {
   if (environment.picture) return SkyImage(smaller_sky(environment.picture->image(), kFinest));
   Environment sky = environment;

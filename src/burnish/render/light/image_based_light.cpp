@@ -189,9 +189,9 @@ double azimuth_sense(Vec3 axis, const Axes& across, int half) noexcept {
   return (dot(cross(axis, across.x), across.z) > 0) != (half == 1) ? 1 : -1;
 }
 
-// What a kernel makes of the light about its axis, in one map. Kernels count their azimuth from the tilt, at
-// alpha: cos(m (psi - alpha)) = cos(m psi) cos(m alpha) + sin(m psi) sin(m alpha), and the sine likewise. Map
-// 2 m - 1 goes with cos(m alpha), map 2 m with sin(m alpha).
+// Returns the light about a kernel's axis after filtering, in one map. Kernels count their azimuth from the tilt, at
+// alpha: cos(m (psi - alpha)) = cos(m psi) cos(m alpha) + sin(m psi) sin(m alpha), and the sine likewise. Map 2 m - 1
+// goes with cos(m alpha), map 2 m with sin(m alpha).
 Channels filtered(const Kernel& kernel, const std::vector<RingLight>& light, std::size_t map,
                   double sense) noexcept {
   const std::size_t order = (map + 1) / 2, other = map == 0 ? 0 : map % 2 ? map + 1 : map - 1;

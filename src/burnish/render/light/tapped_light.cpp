@@ -48,7 +48,7 @@ std::vector<LobeCell> cells_of(const FactoredBrdf& inside, bool of_half) {
   return cells;
 }
 
-// What is nearest to one middle.
+// The part of a lobe that is nearest to one middle.
 struct LobePart {
   Vec3 sum;
   double light = 0, spread = 0;   // reflected; times the squared distance

@@ -24,7 +24,7 @@ double angle_between(Vec3 a, Vec3 b) noexcept {
   return std::acos(std::clamp(dot(normalize(a), normalize(b)), -1.0, 1.0));
 }
 
-// Of a triangle that has no area: none.
+// Returns the normal of a triangle; none if it has no area.
 Vec3 triangle_normal(const RawMesh& raw, std::size_t first) noexcept {
   const Vec3 n =
       cross(raw.positions[first + 1] - raw.positions[first], raw.positions[first + 2] - raw.positions[first]);
@@ -75,7 +75,7 @@ struct Tangent {
   float side = 1;
 };
 
-// What u runs along in a triangle, and whether it is mapped the right way round; none without area in the
+// Returns the direction of u in a triangle, and whether it is mapped the right way round; none without area in the
 // texture.
 Tangent triangle_tangent(const RawMesh& raw, std::size_t first) noexcept {
   const auto edge = [&](std::size_t k) { return raw.positions[first + k] - raw.positions[first]; };
