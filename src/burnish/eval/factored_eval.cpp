@@ -107,6 +107,7 @@ struct Projector {
         store(length(u, v, z), sum_length + i);
       }
     });
+    // One test serves the block: almost always, all directions are unit vectors.
     all_directions = hn::AllFalse(DI(), no_directions(worst));
   }
 
@@ -172,7 +173,7 @@ struct Projector {
     });
   }
 
-  // Projects onto a normalized affine combination of wi, wo and the normal.
+  // Projects onto an affine combination of wi, wo, the mirrored wi and the normal, of any length.
   void project_affine(const Projection& p) {
     x = own_x;
     y = own_y;
@@ -212,6 +213,7 @@ struct Projector {
     const Lane cells(k.cells), centre(0.5 * k.cells);
     if (k.disk)
       for_each([&](std::size_t i) HWY_ATTR {
+        // A disk's position is its middle plus (x, y) times the stretch.
         const Lane scale = stretch(polar(i));
         store(within(mul_add(load(x + i), scale, centre), cells), to + i);
         store(within(mul_add(load(y + i), scale, centre), cells), to + stride + i);
@@ -229,6 +231,7 @@ struct Projector {
       return place(
           k, to, stride, [&](const Polar<Lane>& p) HWY_ATTR { return power_warp(size, exponent, p); },
           [&](const Polar<Lane>& p) HWY_ATTR { return power_stretch(size, exponent, p); });
+    // The power of tan(theta / 2) stays for the next line that shares it.
     if (!k.shares_power)
       for_each([&](std::size_t i) HWY_ATTR { store(power_warp(Lane(1.0), exponent, polar(i)), power + i); });
     for_each([&](std::size_t i) HWY_ATTR { store(within(size * load(power + i), cells), to + i); });
@@ -395,6 +398,7 @@ void multiply_rows(const FactoredPlan::Lookup& lookup, const float* table, const
   }
   for (std::size_t i = 0; i < count; i += kLanes) {
     Lane value[kTogether];
+    // Four channels a direction become one vector a channel, which multiplies the product.
     transpose(rows.values + i * FactoredPlan::kRowStride, value);
     for (std::size_t c = 0; c < kChannels; ++c) block.multiply(c, i, value[c]);
   }
@@ -406,6 +410,7 @@ void multiply(const FactoredPlan& plan, const FactoredPlan::Lookup& lookup, std:
 #if BURNISH_PLANES_IN_REGISTERS
   if (lookup.plane_vectors > 0) {
     const std::size_t plane = lookup.shared ? 0 : group * kTogether * lookup.plane_vectors * 16;
+    // Short lines are read from registers where the processor permutes vectors; all else from rows in memory.
     planes_kernel(lookup.plane_vectors, lookup.shared, kChannels)(
         lookup, plan.values.data() + lookup.planes + plane, block);
     return;
@@ -475,6 +480,7 @@ void eval_group(const FactoredPlan& plan, std::size_t group, std::size_t stride,
   const std::size_t stored = std::min<std::size_t>(kChannels, plan.channels - group * kTogether);
   const auto store_sum = [&](std::size_t channel) HWY_ATTR {
     const auto finish = [&](std::size_t i, Lane(&value)[kChannels]) HWY_ATTR {
+      // `lit` is wo.z where wi.z > 0, else 0: it is positive only where both directions are above the horizon.
       const Lane lit = if_positive(load(wi_z + i), load(wo_z + i));
       for (std::size_t c = 0; c < kChannels; ++c)
         value[c] = if_positive(lit, load(scratch.sum + c * kMaxBlock + i));
@@ -585,6 +591,7 @@ void eval_all(const FactoredPlan& plan, const DirectionPointers& in, std::size_t
   const std::size_t slots = std::max<std::size_t>(plan.slots, 1);
   const std::size_t stride = std::min(kMaxBlock, kPositions / slots / kLanes * kLanes);
   const std::size_t whole = count / kLanes * kLanes;
+  // Models of a volume times a line have a kernel of their own.
   if (plan.volume_and_line && whole != 0) {
     if (in.step == 3)
       eval_volumes<true>(plan, in, whole, scratch.volumes, out);

@@ -27,6 +27,8 @@ struct LaneCellOf {
 using LaneCell = LaneCellOf<D>;
 template <class Tag>
 HWY_INLINE LaneCellOf<Tag> cell_of(LaneOf<Tag> position) {
+  // Adding 1.5 2^23 rounds position - 1/2 to a whole number, the node; subtracting it again gives the node as a
+  // float.
   const LaneOf<Tag> magic(kRoundingShift);
   const LaneOf<Tag> shifted = (position - LaneOf<Tag>(0.5)) + magic;
   return {shifted, position - (shifted - magic)};

@@ -60,6 +60,7 @@ Projected project_expression(const Projection& p, bool azimuth) {
     const auto [v, polar] = affine(p, wi, wo);
     return {polar, v.x, v.y};
   }
+  // A polar angle alone needs no frame; an azimuth takes the components across the half vector.
   const ExprPair pair(wi, wo);
   const Polar<Expr> polar = with_angle(p.kind, [&](const auto& angle) { return angle(pair); });
   if (!azimuth) return {polar, 0.0, 0.0};

@@ -161,6 +161,7 @@ void each_node(const RglTable& table, const Visit& visit) {
   const bool masked = mask_holds(data, std::size_t{slices} * width * height);
 
   for (std::uint32_t node = 0; node < slices * width * height; ++node) {
+    // Nodes are numbered by slice, then row, then column of the square of samples.
     const std::uint32_t slice = node / (width * height), row = node / width % height, column = node % width;
     if (masked && !is_valid(data, node)) continue;
     const DirectionPair pair =
@@ -209,6 +210,7 @@ void each_node(const PatchTable& table, const Visit& visit) {
     for (std::size_t i = 0; i < table.incident.size(); ++i) {
       const DirectionPair pair{table.incident.centre(i), table.outgoing.centre(o)};
       const double f = static_cast<double>(table.values[o * table.incident.size() + i]);
+      // A patch weighs as much of both hemispheres as it covers.
       const double weight = table.incident.projected_solid_angle(i) * table.outgoing.projected_solid_angle(o);
       if (lies_above(pair)) visit({.pair = pair, .f = {&f, 1}, .weight = weight});
     }

@@ -20,8 +20,8 @@ struct HalfProduct {
   std::vector<int> order;  ///< numbers of ordered_factors(), or kConstant: the constant 2^exponent
   int exponent = 0;        ///< what the scale has too much for one constant
 };
-/// Returns the order of a lobe's product whose values are times 2^exponents, one a table, after a first factor: the
-/// scale with those exponents and the constants' taken out.
+/// Returns the order of a lobe's product, given textures that hold values times 2^exponents, one a table. The product
+/// begins with the scale, from which those exponents and the constants' are taken out.
 HalfProduct half_product(const FactoredBrdf& brdf, std::size_t lobe, const std::vector<int>& exponents);
 
 }  // namespace burnish

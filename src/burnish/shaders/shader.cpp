@@ -131,6 +131,7 @@ Expr lobe_value(const Lookups& lookups, const FactoredBrdf& brdf, std::size_t j,
     const HalfProduct half = half_product(brdf, j, exponents);
     const auto constants = static_cast<int>(std::ranges::count(half.order, HalfProduct::kConstant));
     Expr product = scale_value(brdf.lobes()[j], -in_tables - constants * half.exponent);
+    // This order keeps products within half floats; each constant 2^exponent in it is taken out of the scale.
     for (const int k : half.order)
       product = product * (k == HalfProduct::kConstant ? Expr(std::ldexp(1.0, half.exponent))
                                                        : lookups.value(uses[static_cast<std::size_t>(k)]));
@@ -140,6 +141,7 @@ Expr lobe_value(const Lookups& lookups, const FactoredBrdf& brdf, std::size_t j,
   const std::size_t paired = 2 * brdf.pair_count(j);
   Expr product = scale_value(brdf.lobes()[j], -in_tables);
   for (std::size_t k = 0; k < uses.size(); k += k < paired ? 2 : 1) {
+    // A pair's two values are multiplied first, then the product takes them.
     const Expr value = lookups.value(uses[k]);
     product = product * (k < paired ? value * lookups.value(uses[k + 1]) : value);
   }

@@ -43,6 +43,7 @@ class LogOperator {
       smooth_.push_back(options.smooth * table.smooth_share);
     }
     for (const FactorUse& use : uses_) {
+      // A lookup's texels stand at fixed strides from its first node.
       const auto t = use.table;
       const TableLayout& layout = spec_.tables[t].layout;
       const auto [base, copies] = numbering_.tables[t];
@@ -292,8 +293,10 @@ class LogOperator {
       make_row(i, row);
       for_each_corner(rows, i, [&](std::size_t at, std::size_t step_of, float weight) {
         if (step_of == step())
+          // All channels of a texel are one vector.
           for (std::size_t c = 0; c < step(); ++c) y[at + c] += weight * row[c];
         else
+          // A shared table's texel takes the sum over the channels.
           for (std::size_t c = 0; c < step(); ++c) y[at] += weight * row[c];
       });
     }
@@ -307,6 +310,7 @@ class LogOperator {
     const std::size_t group = (chunks_.size() + kGroups - 1) / kGroups;
     std::vector<Floats> parts(chunk_count(chunks_.size(), group));
     for_each_chunk(chunks_.size(), group, [&](std::size_t g, std::size_t begin, std::size_t end) {
+      // A group sums in floats, groups are joined in doubles.
       parts[g].assign(count(), 0);
       for (std::size_t i = begin; i < end; ++i) body(chunks_[i], parts[g]);
     });

@@ -24,6 +24,7 @@ using Slots = std::span<const LobeLanes::Slot>;
 
 constexpr std::size_t kBlock = LobeLanes::kBlock, kBlockLanes = LobeLanes::kBlockLanes;
 
+// Interpolates linearly: a + t (b - a).
 HWY_INLINE V mix(V a, V b, V t) {
   return hn::MulAdd(t, hn::Sub(b, a), a);
 }
@@ -154,6 +155,7 @@ void evaluate(Slots slots, std::size_t parts, const Lookups::Place* places, cons
     float *factor_of = factors + s * kBlockLanes, *product_of = products + slot.part * kBlockLanes;
     const Strides next = strides_of(slot);
     for_each_vector([=](std::size_t i, std::size_t l, std::size_t at) HWY_ATTR {
+      // One interpolation serves all lobes of the part: they are the lanes.
       const V factor = interpolate<axes>(from + place[i].node * kLanes + l, next, place[i]);
       hn::Store(factor, d, factor_of + at);
       hn::Store(hn::Mul(hn::Load(d, product_of + at), factor), d, product_of + at);
@@ -238,6 +240,7 @@ void multiply(Slots slots, const Lookups::Place* places, const float* values, co
     for_each_vector([=](std::size_t i, std::size_t l, std::size_t at) HWY_ATTR {
       const std::size_t node = place[i].node * kLanes + l;
       const V over = reciprocal(interpolate<axes>(value + node, next, place[i]));
+      // The slope is share / factor, and v's interpolation is the directional change of the factor.
       const V slope = hn::Mul(hn::Load(d, share + at), over);
       hn::Store(slope, d, slope_of + at);
       hn::Store(hn::MulAdd(slope, interpolate<axes>(from + node, next, place[i]), hn::Load(d, product + at)),

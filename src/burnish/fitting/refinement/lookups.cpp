@@ -27,6 +27,7 @@ std::vector<Lookups::Place> places_of(const ModelSpec& spec, const std::vector<F
       for (const FactorUse& use : distinct)
         for (std::size_t i = block * Lookups::kBlock; i < (block + 1) * Lookups::kBlock; ++i) {
           const auto& [wi, wo] = set.pairs[std::min(i, set.size() - 1)];
+          // Places are located in doubles, as evaluation defines them, and kept as floats.
           const Lookup at = locate(layout_of(spec, use), use, wi, wo);
           *place++ = {static_cast<std::uint32_t>(at.node), static_cast<float>(at.fx),
                       static_cast<float>(at.fy), static_cast<float>(at.fz)};
