@@ -212,7 +212,7 @@ struct TabulatedSampler::Tables {
   Tables(const Tables&) = delete;
 
   // Returns the size of what is reflected. For isotropic BRDFs one side of the plane of wo, y = 0, stands for the
-  // mean of both, as a measured BRDF need not be its own mirror image.
+  // mean of both. A measured BRDF need not be its own mirror image.
   double size_of(BrdfRef brdf, Vec3 wi, Vec3 wo, std::span<double> f) const {
     const double one = reflected_size(brdf, wi, wo, f);
     return isotropic ? 0.5 * (one + reflected_size(brdf, {wi.x, -wi.y, wi.z}, wo, f)) : one;

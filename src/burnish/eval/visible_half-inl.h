@@ -1,5 +1,6 @@
-// TabulatedSampler's formulas, each written once. No include guard: included in a namespace of its own for double and
-// again in one per instruction set for vectors of floats, so that every copy is compiled with that set's flags.
+// TabulatedSampler's formulas, each written once. There is no include guard. The file is included in a namespace of
+// its own for double, and again in one per instruction set for vectors of floats. So every copy is compiled with that
+// set's flags.
 //
 // `view` has the tables, their sizes and the members of SamplerView that the formulas read, as any type of number.
 //
@@ -181,8 +182,8 @@ struct Placed {
   F x, y, z, density;
 };
 
-/// Returns the direction at turn and v. For isotropic tables, the turn is from the azimuth of wo (`plane` is the
-/// arrow of wo's x and y) to the side that the sign of `side` tells.
+/// Returns the direction at turn and v. For isotropic tables, the turn is from the azimuth of wo to the side that the
+/// sign of `side` tells; `plane` is the arrow of wo's x and y.
 template <bool kIsotropic, class F, class View>
 SAMPLER_INLINE Placed<F> place(const View& view, F wo_x, F wo_y, F wo_z, const Arrow<F>& plane, F turned, F v,
                                F side) {

@@ -111,8 +111,8 @@ struct FitOptions;
 /// - nodes: scattered samples, unless they crowd about wi = wo or are fewer than 1,000 of an anisotropic source; and
 ///   isotropic RGL files. Their owners multiply the interpolation between nodes by a distribution of normals, speckle
 ///   included (docs/results/measured.md). Nodes also wherever some are held out.
-/// - function: any other source, and every source without symmetrize, for one lobe, for baselines and books, and where a
-///   budget's smoothness is cross-validated.
+/// - function: any other source, and every source without symmetrize, for one lobe, for baselines and books, and where
+///   a budget's smoothness is cross-validated.
 /// Scattered samples with lobes as given are fitted as they are.
 FitTarget default_target(const Source& source, const FitOptions& options);
 
