@@ -40,7 +40,7 @@ struct ComparedFigures {
   ErrorFigures figures;
   std::vector<ComparedAlbedo> albedos;    ///< at 0, 15, ... 75 degrees, see albedo_curve
   std::optional<NodeFigures> nodes = {};  ///< where the reference is a measurement
-  /// Against the truth behind scattered samples.
+  /// The error against the truth behind scattered samples; nothing for other references.
   std::optional<ExpectedError> expected = {};
 };
 
@@ -56,9 +56,10 @@ struct Measurement {
   MeasuredNodes nodes;                        ///< those that are scored
   NodeFigures itself;                         ///< the reference's own figures there, made reciprocal
   std::optional<MeasurementQuality> quality;  ///< none where nothing tells
-  /// What knows how far the function between scattered samples may be off; of others null. Must outlive this.
+  /// The function between scattered samples, which knows how far it may be off; null for other references. It must
+  /// outlive this.
   const KrigedNodes* between = nullptr;
-  std::optional<ExpectedError> expected = {};  ///< of the function between scattered samples
+  std::optional<ExpectedError> expected = {};  ///< the error of that function itself
 };
 
 /// Figures of every model, in their order; at the nodes too where a measurement is given. Throws Error as Scorer.
