@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <filesystem>
-#include <initializer_list>
 #include <memory>
 
 #include <fmt/format.h>
@@ -9,6 +8,8 @@
 
 #include <burnish/file.h>
 #include <burnish/io/convert.h>
+#include <burnish/io/formats.h>
+#include <burnish/math/closest_name.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/surface/surface_file.h>
 
@@ -30,36 +31,24 @@ struct ConvertArguments {
   bool json = false;
 };
 
-/// The format asked for, or the one the output's name ends in.
-std::string target_format(const ConvertArguments& arguments) {
-  if (!arguments.to.empty()) return arguments.to;
-  const std::string extension = std::filesystem::path(arguments.out).extension().string();
-  if (extension == ".binary") return "merl";
-  if (extension == ".bsdf") return "rgl";
-  if (extension == ".xompt") return "openmaterial";
-  if (extension == ".bin") return "utia";
-  if (extension == ".xml") return "tensortree";
-  for (const char* same : {"mbsdf", "astm", "csv", "exr", "burnish"})
-    if (extension.substr(extension.empty() ? 0 : 1) == same) return same;
-  throw CLI::ValidationError(arguments.out,
-                             "expected a name that ends in .binary, .bin, .bsdf, .mbsdf, .xml, .xompt, "
-                             ".astm, .csv, .exr or .burnish, or "
-                             "--to");
+/// The formats that an option says something of; first those that have a table's entries without it.
+std::string formats_with(bool Format::*option, std::string_view last_by = "or") {
+  std::vector<std::string_view> names;
+  for (const bool entries_first : {true, false})
+    for (const Format& format : formats())
+      if (format.write && format.*option && format.entries_first == entries_first)
+        names.push_back(format.to == "exr" ? "slices" : format.to);
+  return listed(names, last_by);
 }
 
-/// A format's endings where it has any; other kinds' are refused.
-std::vector<std::string> endings_of(const std::string& format) {
-  if (format == "merl") return {".binary"};
-  if (format == "rgl" || format == "zemax") return {".bsdf", ".txt"};
-  if (format == "utia") return {".bin"};
-  if (format == "tensortree") return {".xml"};
-  if (format == "openmaterial") return {".xompt", ".json"};
-  if (format == "csv" || format == "astm") return {"." + format, ".txt"};
-  return {"." + (format == "model" ? "exr" : format)};
-}
-
-bool is_one_of(const std::string& format, std::initializer_list<const char*> formats) {
-  return std::ranges::find(formats, format) != formats.end();
+/// The format asked for, or the one that the output's name ends in.
+const Format& target_format(const ConvertArguments& arguments) {
+  const Format* const format =
+      arguments.to.empty() ? format_ending_in(std::filesystem::path(arguments.out).extension().string())
+                           : format_to(arguments.to);
+  if (format) return *format;
+  throw CLI::ValidationError(
+      arguments.out, fmt::format("expected a name that ends in {}, or --to", listed(naming_endings())));
 }
 
 /// Which options were given, since each speaks of some formats alone.
@@ -73,18 +62,16 @@ GivenOptions given_options(const CLI::App& verb) {
 }
 
 /// Refuses options that say nothing of the format.
-void check_options(const GivenOptions& given, const std::string& format) {
-  const auto refuse = [&](bool wanted, const char* option, const char* formats) {
+void check_options(const GivenOptions& given, const Format& format) {
+  const auto refuse = [&](bool wanted, const char* option, const std::string& formats) {
     if (wanted)
       throw CLI::ValidationError(
-          fmt::format("{}: expected {} to be written with it, found {}", option, formats, format));
+          fmt::format("{}: expected {} to be written with it, found {}", option, formats, format.to));
   };
-  const bool cells = is_one_of(format, {"merl", "mbsdf", "tensortree", "exr"}),
-             scattered = is_one_of(format, {"astm", "csv", "openmaterial"});
-  refuse(given.cells && !cells, "--cells", "merl, mbsdf, tensortree or slices");
-  refuse(given.count && !scattered, "--count", "astm, csv or openmaterial");
-  refuse(given.entries && !scattered, "--entries", "astm, csv or openmaterial");
-  refuse(given.notes && format != "burnish", "--notes", "a .burnish file");
+  refuse(given.cells && !format.takes_cells, "--cells", formats_with(&Format::takes_cells));
+  refuse(given.count && !format.takes_count, "--count", formats_with(&Format::takes_count));
+  refuse(given.entries && !format.takes_count, "--entries", formats_with(&Format::takes_count));
+  refuse(given.notes && !format.takes_notes, "--notes", "a .burnish file");
 }
 
 /// The same of options that say nothing of the source.
@@ -106,7 +93,7 @@ void print_said(const std::string& out, const Converted& converted) {
 }
 
 /// A surface's other file. False where the input is none.
-bool converts_surface(const ConvertArguments& arguments, const std::string& format) {
+bool converts_surface(const ConvertArguments& arguments, std::string_view format) {
   const std::string& spec = arguments.source.spec;
   if (std::error_code none; is_analytic_spec(spec) || !std::filesystem::is_regular_file(spec, none))
     return false;
@@ -116,7 +103,7 @@ bool converts_surface(const ConvertArguments& arguments, const std::string& form
   if (slices || (format != "exr" && format != "model" && format != "burnish"))
     throw Error::in_file(
         spec, "a surface to become .exr or .burnish, or surface:FILE#COLUMN,ROW for one of its texels",
-        slices ? "slices" : format);
+        slices ? "slices" : std::string(format));
   const SurfaceModel surface = parse_surface(file);
   const std::string bytes = format == "burnish" ? format_surface(surface) : format_surface_exr(surface);
   write_then_rename(arguments.out, bytes);
@@ -131,31 +118,31 @@ bool converts_surface(const ConvertArguments& arguments, const std::string& form
 void run_convert(const ConvertArguments& given_arguments, const GivenOptions& given) {
   ConvertArguments arguments = given_arguments;
   if (arguments.out.empty()) throw CLI::RequiredError("OUT or -o");
-  std::string format = target_format(arguments);
-  check_ending(arguments.out, endings_of(format));
-  check_options(given, format);
+  const Format* format = &target_format(arguments);
+  check_ending(arguments.out, endings_of(*format));
+  check_options(given, *format);
   check_writable(arguments.out);
-  if (converts_surface(arguments, format)) return;
+  if (converts_surface(arguments, format->to)) return;
   const Source source = arguments.source.open();
   check_source(given, source);
   // slices of a model are asked for by name
   const bool is_model = std::holds_alternative<FactoredBrdf>(source.brdf);
-  if (is_model && format == "exr" && arguments.to.empty()) format = "model";
-  check_options(given, format);
+  if (is_model && format->to == "exr" && arguments.to.empty()) format = format_to("model");
+  check_options(given, *format);
   // what was measured, unless draws are asked for
-  if (!given.count && is_one_of(format, {"astm", "csv"}) && has_entries(source))
-    arguments.options.entries = true;
+  if (!given.count && format->entries_first && has_entries(source)) arguments.options.entries = true;
   const Converted converted = [&] {
     const Progress progress("converting");
-    return convert(source, format, arguments.options);
+    return convert(source, format->to, arguments.options);
   }();
   if (given.cells && !converted.resampled)
     throw CLI::ValidationError(fmt::format(
-        "--cells: expected a source that is sampled anew, found entries that {} keeps as they are", format));
+        "--cells: expected a source that is sampled anew, found entries that {} keeps as they are",
+        format->to));
   write_then_rename(arguments.out, converted.bytes);
   if (!arguments.json) return print_said(arguments.out, converted);
   print_as_json({{"output", arguments.out},
-                 {"format", format},
+                 {"format", format->to},
                  {"bytes", converted.bytes.size()},
                  {"lost", converted.losses},
                  {"notes", converted.notes},
@@ -182,19 +169,21 @@ void add_convert_command(CLI::App& app) {
   auto* out = verb->add_option("OUT", arguments->out, "Names the file to write.");
   verb->add_option("-o,--output,--out", arguments->out, "Names the file to write, as OUT does.")
       ->excludes(out);
+  const std::vector<std::string_view> names = convert_formats();
   verb->add_option("--to", arguments->to,
                    "Writes this format, not the one that OUT's ending names; exr of a model writes slices.")
-      ->check(one_of({kConvertFormats.begin(), kConvertFormats.end()}));
+      ->check(one_of({names.begin(), names.end()}));
   verb->add_option("--cells", arguments->options.cells,
-                   "Makes so many cells along each polar angle of merl, mbsdf, tensortree and slices, twice "
-                   "as many along the azimuth.")
+                   fmt::format("Makes so many cells along each polar angle of {}, twice as many along the "
+                               "azimuth.",
+                               formats_with(&Format::takes_cells, "and")))
       ->check(in_range(2, 1000))
       ->capture_default_str();
-  auto* count =
-      verb->add_option("--count", arguments->options.count,
-                       "Draws so many samples for astm, csv or openmaterial, instead of a table's entries.")
-          ->check(in_range(1, 10000000))
-          ->capture_default_str();
+  auto* count = verb->add_option("--count", arguments->options.count,
+                                 fmt::format("Draws so many samples for {}, instead of a table's entries.",
+                                             formats_with(&Format::takes_count)))
+                    ->check(in_range(1, 10000000))
+                    ->capture_default_str();
   verb->add_flag("--entries", arguments->options.entries,
                  "Writes a table's entries to openmaterial too; astm and csv have them without it.")
       ->excludes(count);

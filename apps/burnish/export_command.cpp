@@ -69,10 +69,11 @@ ExportedFiles exported_model(const ExportArguments& arguments, const Source& sou
     throw CLI::ValidationError("--power: expected phong or blinn_phong with it, found a file");
   ExportOptions options = options_of(arguments);
   if (!arguments.environment.empty() && std::ranges::none_of(options.to, shows_environment))
-    throw CLI::ValidationError("--environment: expected --to glsl, glsl_es or html with it, found others");
+    throw CLI::ValidationError(fmt::format("--environment: expected --to {} with it, found others",
+                                           targets_that(shows_environment)));
   if (options.half && std::ranges::none_of(options.to, has_half_products))
     throw CLI::ValidationError(
-        "--half: expected --to glsl, glsl_es, hlsl, msl or wgsl with it, found others");
+        fmt::format("--half: expected --to {} with it, found others", targets_that(has_half_products)));
   if (options.name.empty()) options.name = name_of(arguments.model);
   const FactoredBrdf brdf = to_model(source).brdf;
   options.environment = environment_of(arguments.environment);

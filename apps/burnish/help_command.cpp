@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <memory>
 
 #include <fmt/format.h>
@@ -7,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/fitting/numerics/linear_algebra.h>
+#include <burnish/io/formats.h>
 #include <burnish/math/build_info.h>
 #include <burnish/reflectance/analytic.h>
 
@@ -19,47 +19,14 @@ namespace burnish::cli {
 
 namespace {
 
-/// A format as `burnish help formats` has it.
-struct FormatHelp {
-  const char *name, *to, *extension, *holds;
-  bool read, written;
-};
-
-constexpr std::array kFormats = {
-    FormatHelp{"MERL", "merl", ".binary", "half/difference cells, RGB, isotropic", true, true},
-    FormatHelp{"UTIA", "utia", ".bin", "6 x 48 directions of light and view, RGB", true, true},
-    FormatHelp{"RGL", "rgl", ".bsdf", "adaptive nodes, RGB or spectra", true, true},
-    FormatHelp{"MBSDF", "mbsdf", ".mbsdf", "even angles, grey or RGB, isotropic", true, true},
-    FormatHelp{"Zemax", "zemax", ".bsdf", "angles around the mirror direction, grey or XYZ", true, true},
-    FormatHelp{"tensor tree", "tensortree", ".xml",
-               "cubes of Shirley-Chiu squares, grey (rank 3: of rank 3 alone)", true, true},
-    FormatHelp{"Klems", "", ".xml", "patches of both hemispheres, grey", true, false},
-    FormatHelp{"Speos", "", ".anisotropicbsdf, .brdf", "theta and phi of each incidence, grey or spectra",
-               true, false},
-    FormatHelp{"OpenMATERIAL 3D", "openmaterial", ".xompt", "scattered spectra, isotropic", true, true},
-    FormatHelp{"ALTA", "", ".dat", "scattered, in coordinates of its own, grey or RGB", true, false},
-    FormatHelp{"ASTM E1392", "astm", ".astm", "scattered, grey, RGB or spectra", true, true},
-    FormatHelp{"CSV", "csv", ".csv, .txt", "scattered, grey, RGB or spectra", true, true},
-    FormatHelp{"FRED", "", ".txt", "scattered, grey, isotropic", true, false},
-    FormatHelp{"Cornell", "", ".brdf", "scattered spectra, isotropic", true, false},
-    FormatHelp{"EXR slices", "exr", ".exr", "half/difference cells to look at", false, true},
-    FormatHelp{"model, OpenEXR", "model", ".exr", "what fit writes", true, true},
-    FormatHelp{"model, compact", "burnish", ".burnish", "what fit writes", true, true},
-    FormatHelp{"surface", "", ".burnish, .exr", "surface:FILE#COLUMN,ROW, what fit-surface writes", true,
-               true},
-    FormatHelp{"book of a library", "", ".burnish", "book:FILE#NAME, what book writes", true, false},
-    FormatHelp{"baseline", "", ".json", "what fit --method writes", true, false},
-    FormatHelp{"network weights", "", ".csv", "nbrdf:FILE#NAME", true, false},
-    FormatHelp{"Neural Processes codes", "", ".csv", "np:FOLDER#NAME", true, false}};
-
 nlohmann::ordered_json formats_json() {
   auto list = nlohmann::ordered_json::array();
-  for (const FormatHelp& f : kFormats)
-    list.push_back({{"name", f.name},
+  for (const Format& f : formats())
+    list.push_back({{"name", f.title},
                     {"to", f.to},
-                    {"extension", f.extension},
-                    {"read", f.read},
-                    {"written", f.written},
+                    {"extension", f.endings},
+                    {"read", f.is_read()},
+                    {"written", f.is_written()},
                     {"holds", f.holds}});
   return list;
 }
@@ -68,9 +35,9 @@ void print_formats() {
   fmt::print(
       "Files are known by their content. `burnish convert IN OUT --to NAME` writes those with a name.\n\n");
   fmt::print("{:23} {:13} {:24} {:6} {}\n", "format", "--to", "usual ending", "", "holds");
-  for (const FormatHelp& f : kFormats)
-    fmt::print("{:23} {:13} {:24} {:6} {}\n", f.name, f.to, f.extension,
-               f.read && f.written ? "both" : (f.read ? "read" : "write"), f.holds);
+  for (const Format& f : formats())
+    fmt::print("{:23} {:13} {:24} {:6} {}\n", f.title, f.to, f.endings,
+               f.is_read() && f.is_written() ? "both" : (f.is_read() ? "read" : "write"), f.holds);
 }
 
 nlohmann::ordered_json models_json() {

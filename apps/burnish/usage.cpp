@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <burnish/io/formats.h>
 #include <burnish/math/closest_name.h>
 
 namespace burnish::cli {
@@ -106,66 +107,14 @@ void check_folder(const std::filesystem::path& folder) {
 
 namespace {
 
-// Endings that say what a file is: no other kind of file is to have them.
-constexpr auto kKnownEndings = std::to_array<std::string_view>({".anisotropicbsdf",
-                                                                ".astm",
-                                                                ".bin",
-                                                                ".binary",
-                                                                ".bmp",
-                                                                ".brdf",
-                                                                ".bsdf",
-                                                                ".burnish",
-                                                                ".c",
-                                                                ".cpp",
-                                                                ".csv",
-                                                                ".cube",
-                                                                ".dds",
-                                                                ".exr",
-                                                                ".gif",
-                                                                ".glb",
-                                                                ".glsl",
-                                                                ".gltf",
-                                                                ".h",
-                                                                ".hdr",
-                                                                ".hlsl",
-                                                                ".html",
-                                                                ".jpeg",
-                                                                ".jpg",
-                                                                ".js",
-                                                                ".json",
-                                                                ".jsonl",
-                                                                ".ktx2",
-                                                                ".mbsdf",
-                                                                ".md",
-                                                                ".mdl",
-                                                                ".metal",
-                                                                ".mjs",
-                                                                ".msl",
-                                                                ".mtlx",
-                                                                ".obj",
-                                                                ".pdf",
-                                                                ".pfm",
-                                                                ".png",
-                                                                ".py",
-                                                                ".rs",
-                                                                ".spv",
-                                                                ".sqlite",
-                                                                ".sv",
-                                                                ".svg",
-                                                                ".tif",
-                                                                ".tiff",
-                                                                ".tsv",
-                                                                ".txt",
-                                                                ".usd",
-                                                                ".usda",
-                                                                ".usdz",
-                                                                ".v",
-                                                                ".vert",
-                                                                ".frag",
-                                                                ".wgsl",
-                                                                ".xml",
-                                                                ".xompt",
-                                                                ".zip"});
+// Endings of other programs' files and of exports; with those of formats they say what a file is: no other kind of file
+// is to have them.
+constexpr auto kOtherEndings = std::to_array<std::string_view>(
+    {".bmp", ".c",   ".cpp",   ".cube", ".dds",    ".gif",  ".glb",  ".glsl",  ".gltf",
+     ".h",   ".hdr", ".hlsl",  ".html", ".jpeg",   ".jpg",  ".js",   ".jsonl", ".ktx2",
+     ".md",  ".mdl", ".metal", ".mjs",  ".msl",    ".mtlx", ".obj",  ".pdf",   ".pfm",
+     ".png", ".py",  ".rs",    ".spv",  ".sqlite", ".sv",   ".svg",  ".tif",   ".tiff",
+     ".tsv", ".usd", ".usda",  ".usdz", ".v",      ".vert", ".frag", ".wgsl",  ".zip"});
 
 std::string ending_of(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
@@ -175,7 +124,11 @@ std::string ending_of(const std::string& path) {
 }
 
 bool is_known_ending(const std::string& ending) {
-  return std::ranges::find(kKnownEndings, ending) != kKnownEndings.end();
+  if (ending == ".dat") return false;  // ALTA's, and anybody's
+  return std::ranges::find(kOtherEndings, ending) != kOtherEndings.end() ||
+         std::ranges::any_of(formats(), [&](const Format& format) {
+           return std::ranges::count(endings_of(format), ending) > 0;
+         });
 }
 
 }  // namespace

@@ -28,6 +28,7 @@
 #include <burnish/io/open_source.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/closest_name.h>
 #include <burnish/metrics/albedo.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/report/compare_report.h>
@@ -409,9 +410,12 @@ Reply images(const Request& request) {
 }
 
 ShaderLanguage language_named(const std::string& name) {
-  for (const ShaderLanguage language : kShaderLanguages)
+  std::vector<std::string_view> names;
+  for (const ShaderLanguage language : kShaderLanguages) {
     if (to_string(language) == name) return language;
-  throw Error(fmt::format("shader: expected glsl, glsl_es, hlsl, msl, wgsl or cpp, found '{}'", name));
+    names.push_back(to_string(language));
+  }
+  throw Error(fmt::format("shader: expected {}, found '{}'", listed(names), name));
 }
 
 void add_textures(std::span<const ShaderTexture> textures, Json& list, Reply& reply) {
@@ -538,12 +542,13 @@ Reply export_material(const Request& request) {
   if (const auto& surface = opened(a).surface) return export_surface_of(*surface, kind, name);
   const Source& source = material(a);
   const bool is_model = std::holds_alternative<FactoredBrdf>(source.brdf);
-  std::vector<std::string_view> kinds(kConvertFormats.begin(), kConvertFormats.end());
+  const std::vector<std::string_view> formats = convert_formats();
+  std::vector<std::string_view> kinds = formats;
   for (const std::string_view target : export_target_names())
     if (std::ranges::find(kinds, target) == kinds.end()) kinds.push_back(target);
   if (std::ranges::find(kinds, kind) == kinds.end())
     throw Error(fmt::format("export: {}", expected_one_of(kinds, kind)));
-  if (std::ranges::find(kConvertFormats, kind) != kConvertFormats.end()) {
+  if (std::ranges::find(formats, kind) != formats.end()) {
     ConvertOptions options;
     given.read("count", options.count, 1, 100'000'000);
     given.read("seed", options.seed);

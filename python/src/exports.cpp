@@ -3,6 +3,7 @@
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -18,6 +19,7 @@
 #include <burnish/source.h>
 
 #include "opened_brdf.h"
+#include "texts.h"
 
 namespace burnish::python {
 
@@ -89,31 +91,33 @@ nb::dict exported_analytic(const std::string& spec, const Names& to,
 
 void bind_exports(nb::module_& m) {
   const ExportOptions defaults;
-  m.def("export", &exported_model, nb::arg("model"), nb::arg("to"), nb::arg("folder") = nb::none(),
-        nb::kw_only(), nb::arg("name") = nb::none(), nb::arg("exact") = defaults.exact,
-        nb::arg("half") = defaults.half, nb::arg("mips") = defaults.mips,
-        nb::arg("compressed") = defaults.compressed, nb::arg("cells") = defaults.cells,
-        nb::arg("environment") = nb::none(),
-        nb::sig(
-            "def export(model: Model, to: str | list[str], folder: str | os.PathLike | None = None, *, "
-            "name: str | None = None, exact: bool = False, half: bool = False, mips: bool = False, "
-            "compressed: bool = True, cells: int = 90, environment: str | None = None) -> dict[str, bytes]"),
-        "What `burnish export` writes, by the files' names, the last one the manifest NAME.json; into the "
-        "folder\n"
-        "too where one is given.\n\n"
-        "to: one or several of \"ktx2\", \"cube\", \"exr\", \"png\", \"gltf\", \"materialx\", \"usda\", "
-        "\"mdl\",\n\"three\", \"babylon\", \"rgl\", \"html\" and the shaders \"glsl\", \"glsl_es\", "
-        "\"hlsl\", \"msl\", \"wgsl\" and \"cpp\", which bring their textures "
-        "along. "
-        "name: of files,\nfunctions and MaterialX's nodes; by default the source's, \"paint\" for "
-        "\"paint.binary\". exact: shaders weigh texels themselves, in floats. half: they multiply "
-        "them in half precision\n(mediump, min16float, half, f16), within 1 %; \"cpp\" stays single. mips: "
-        "KTX2 "
-        "with levels. "
-        "compressed: KTX2\nwith Zstandard. cells: of \"mdl\", along each polar angle. environment: \"sun\", "
-        "\"studio\" or an OpenEXR picture of all "
-        "directions, "
-        "whose light glsl,\nglsl_es and html show.");
+  m.def(
+      "export", &exported_model, nb::arg("model"), nb::arg("to"), nb::arg("folder") = nb::none(),
+      nb::kw_only(), nb::arg("name") = nb::none(), nb::arg("exact") = defaults.exact,
+      nb::arg("half") = defaults.half, nb::arg("mips") = defaults.mips,
+      nb::arg("compressed") = defaults.compressed, nb::arg("cells") = defaults.cells,
+      nb::arg("environment") = nb::none(),
+      nb::sig(
+          "def export(model: Model, to: str | list[str], folder: str | os.PathLike | None = None, *, "
+          "name: str | None = None, exact: bool = False, half: bool = False, mips: bool = False, "
+          "compressed: bool = True, cells: int = 90, environment: str | None = None) -> dict[str, bytes]"),
+      fmt::format(
+          "What `burnish export` writes, by the files' names, the last one the manifest NAME.json; into the "
+          "folder\n"
+          "too where one is given.\n\n"
+          "to: one or several of {}.\nShaders bring their textures along. "
+          "name: of files,\nfunctions and MaterialX's nodes; by default the source's, \"paint\" for "
+          "\"paint.binary\". exact: shaders weigh texels themselves, in floats. half: they multiply "
+          "them in half precision\n(mediump, min16float, half, f16), within 1 %; \"cpp\" stays single. mips: "
+          "KTX2 "
+          "with levels. "
+          "compressed: KTX2\nwith Zstandard. cells: of \"mdl\", along each polar angle. environment: "
+          "\"sun\", "
+          "\"studio\" or an OpenEXR picture of all "
+          "directions, "
+          "whose light {}\nshow.",
+          quoted_names(export_target_names()), targets_that(shows_environment))
+          .c_str());
   m.def("export", &exported_analytic, nb::arg("spec"), nb::arg("to"), nb::arg("folder") = nb::none(),
         nb::kw_only(), nb::arg("name") = nb::none(), nb::arg("cells") = defaults.cells,
         nb::arg("power") = nb::none(),

@@ -22,13 +22,16 @@ namespace burnish::python {
 
 namespace {
 
+std::vector<std::string_view> language_names() {
+  std::vector<std::string_view> names;
+  for (const ShaderLanguage language : kShaderLanguages) names.push_back(to_string(language));
+  return names;
+}
+
 ShaderLanguage language_of(const std::string& name) {
-  std::vector<std::string_view> known;
-  for (const ShaderLanguage language : kShaderLanguages) {
+  for (const ShaderLanguage language : kShaderLanguages)
     if (to_string(language) == name) return language;
-    known.push_back(to_string(language));
-  }
-  throw Error(fmt::format("language: expected {}, found '{}'", fmt::join(known, ", "), name));
+  throw Error(fmt::format("language: expected {}, found '{}'", fmt::join(language_names(), ", "), name));
 }
 
 Shader shader_of(const OpenedModel& model, const std::string& language, bool exact, bool half,
@@ -105,12 +108,15 @@ void bind_shaders(nb::module_& m) {
       "generate_shader", &shader_of, nb::arg("model"), nb::arg("language") = "glsl", nb::kw_only(),
       nb::arg("exact") = false, nb::arg("half") = false, nb::arg("name") = "brdf",
       nb::call_guard<nb::gil_scoped_release>(),
-      "Two functions, as `burnish export --to` writes them: burnish_NAME(wi, wo), f_r in 1/sr of unit\n"
-      "vectors of the local frame, and burnish_NAME_world(n, t, l, v).\n\n"
-      "language: \"glsl\", \"glsl_es\", \"hlsl\", \"msl\", \"wgsl\" or \"cpp\", which has its tables inside. "
-      "exact: texels\nare weighed in floats, not by the texture unit; always so in cpp. half: texels are "
-      "multiplied in half\nprecision (mediump, min16float, half, f16), within 1 %; neither exact nor in "
-      "cpp.");
+      fmt::format(
+          "Two functions, as `burnish export --to` writes them: burnish_NAME(wi, wo), f_r in 1/sr of unit\n"
+          "vectors of the local frame, and burnish_NAME_world(n, t, l, v).\n\n"
+          "language: {}; cpp has its tables inside.\nexact: texels are weighed in floats, not by the texture "
+          "unit; always so in cpp. half: texels are "
+          "multiplied in half\nprecision (mediump, min16float, half, f16), within 1 %; neither exact nor in "
+          "cpp.",
+          quoted_names(language_names(), "or"))
+          .c_str());
   m.def("write_ktx2", &write_ktx2, nb::arg("path"), nb::arg("texture"), nb::kw_only(),
         nb::arg("compressed") = true, nb::call_guard<nb::gil_scoped_release>(),
         "Writes a shader's texture as a KTX2 file. compressed: with Zstandard.");

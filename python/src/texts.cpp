@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/factors/model_spec.h>
+#include <burnish/math/closest_name.h>
 #include <burnish/short_message.h>
 
 namespace burnish::python {
@@ -90,6 +91,12 @@ std::string text_of_lobe(const Lobe& lobe) {
   for (const FactorUse& use : lobe.factors) tables.push_back(use.table);
   return fmt::format("<burnish lobe: scale ({:.4g}), tables {}>", fmt::join(lobe.scale, ", "),
                      fmt::join(tables, " * "));
+}
+
+std::string quoted_names(std::span<const std::string_view> names, std::string_view last_by) {
+  std::vector<std::string> quotes;
+  for (const std::string_view name : names) quotes.push_back(fmt::format("\"{}\"", name));
+  return listed(std::vector<std::string_view>(quotes.begin(), quotes.end()), last_by);
 }
 
 }  // namespace burnish::python

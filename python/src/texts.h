@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "opened_brdf.h"
 
@@ -16,6 +18,9 @@ std::string text_of_lobe(const Lobe& lobe);
 
 /// "1 channel", "3 channels".
 std::string counted(std::size_t count, const char* noun);
+
+/// Names in quotes as a sentence has them: "\"a\", \"b\" and \"c\"".
+std::string quoted_names(std::span<const std::string_view> names, std::string_view last_by = "and");
 
 /// A name in quotes, of a long one its beginning and its end.
 std::string quoted(const std::string& name);

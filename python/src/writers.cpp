@@ -1,14 +1,18 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <burnish/file.h>
 #include <burnish/io/convert.h>
+#include <burnish/io/formats.h>
+#include <burnish/math/closest_name.h>
 
 #include "opened_brdf.h"
+#include "texts.h"
 
 namespace burnish::python {
 
@@ -33,6 +37,14 @@ std::vector<std::string> write_converted(const OpenedBrdf& source, const std::fi
   return std::move(converted.losses);
 }
 
+/// The formats of which an argument says something.
+std::string names_with(bool Format::*argument) {
+  std::vector<std::string_view> names;
+  for (const Format& format : formats())
+    if (format.write && format.*argument) names.push_back(format.to);
+  return names.size() == 1 ? std::string(names[0]) : listed(names, "and");
+}
+
 }  // namespace
 
 void bind_writers(nb::module_& m) {
@@ -48,12 +60,15 @@ void bind_writers(nb::module_& m) {
         nb::arg("count") = defaults.count, nb::arg("seed") = defaults.seed,
         nb::arg("entries") = defaults.entries, nb::arg("cells") = defaults.cells,
         nb::arg("notes") = defaults.notes,
-        "Writes a source in another format and says what that lost, a phrase each.\n\n"
-        "format: \"merl\", \"utia\", \"rgl\" (for Mitsuba's `measured` and pbrt-v4), \"mbsdf\", "
-        "\"zemax\", \"tensortree\",\n\"openmaterial\", \"astm\", \"csv\", \"exr\" (slices), or of a "
-        "model its files \"model\" (OpenEXR) or\n\"burnish\". count, seed: samples drawn for astm, csv and "
-        "openmaterial; entries: a table's entries instead;\ncells: along each polar angle of merl, mbsdf and "
-        "exr; notes: those of the fit are kept in burnish.");
+        fmt::format(
+            "Writes a source in another format and says what that lost, a phrase each.\n\n"
+            "format: {}.\n\"rgl\" is for Mitsuba's `measured` and pbrt-v4, \"exr\" has slices; \"model\" "
+            "(OpenEXR) and \"burnish\"\nare the files of a model. count, seed: samples drawn for {};\n"
+            "entries: a table's entries instead; cells: along each polar angle of {};\nnotes: those of the "
+            "fit are kept in {}.",
+            quoted_names(convert_formats()), names_with(&Format::takes_count),
+            names_with(&Format::takes_cells), names_with(&Format::takes_notes))
+            .c_str());
 }
 
 }  // namespace burnish::python

@@ -292,9 +292,11 @@ ExportedFiles ModelExport::run() && {
 
 ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& options) {
   if (options.environment && std::ranges::none_of(options.to, shows_environment))
-    throw Error("environment: expected glsl, glsl_es or html with it, found others");
+    throw Error(
+        fmt::format("environment: expected {} with it, found others", targets_that(shows_environment)));
   if (options.half && std::ranges::none_of(options.to, has_half_products))
-    throw Error("export: expected glsl, glsl_es, hlsl, msl or wgsl with half products, found others");
+    throw Error(
+        fmt::format("export: expected {} with half products, found others", targets_that(has_half_products)));
   return ModelExport(brdf, options).run();
 }
 

@@ -62,6 +62,16 @@ bool shows_environment(ExportTarget target) noexcept {
   return target == ExportTarget::glsl || target == ExportTarget::glsl_es || target == ExportTarget::html;
 }
 
+std::string targets_that(bool (*are_so)(ExportTarget target) noexcept) {
+  std::vector<std::string_view> names;
+  for (const bool languages : {true, false})
+    for (std::size_t i = 0; i < kNames.size(); ++i)
+      if (const auto target = static_cast<ExportTarget>(i);
+          language_of(target).has_value() == languages && are_so(target))
+        names.push_back(kNames[i]);
+  return listed(names);
+}
+
 void write_files(const std::filesystem::path& folder, std::span<const ExportedFile> files) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);

@@ -48,6 +48,9 @@ bool has_half_products(ExportTarget target) noexcept;
 /// Returns true if the target can show light from all around: glsl, glsl_es and html.
 bool shows_environment(ExportTarget target) noexcept;
 
+/// Returns the targets for which the predicate holds, languages first, as a sentence has them: "glsl, glsl_es or html".
+std::string targets_that(bool (*are_so)(ExportTarget target) noexcept);
+
 /// Returns the name of an export's functions and files, made of a text's letters and digits; "brdf" where it has
 /// none.
 std::string export_name(std::string_view text);

@@ -9,8 +9,9 @@
 #include <burnish/error.h>
 #include <burnish/factors/compact_file.h>
 #include <burnish/io/astm.h>
-#include <burnish/io/convert.h>
+#include <burnish/io/convert_writers.h>
 #include <burnish/io/csv.h>
+#include <burnish/io/formats.h>
 #include <burnish/io/mbsdf.h>
 #include <burnish/io/merl.h>
 #include <burnish/io/open_source.h>
@@ -117,11 +118,6 @@ bool has_colour(BrdfRef brdf) {
   return false;
 }
 
-/// Formats that keep what a source calls itself (sample_name).
-bool has_place_for_name(std::string_view format) noexcept {
-  return format == "rgl" || format == "zemax" || format == "tensortree" || format == "openmaterial";
-}
-
 /// Whether the description is the file's own words: of MERL and UTIA, which have none, it is ours.
 bool has_own_remark(const Source& source) {
   const auto* angles = std::get_if<AngleTable>(&source.brdf);
@@ -138,38 +134,24 @@ std::string named_comments(const std::vector<std::string>& comments) {
   return comments.size() > kMost ? text + fmt::format(" and {} more", comments.size() - kMost) : text;
 }
 
+/// Which samples have both directions so far above the horizon that a reader sees them there.
+std::vector<std::size_t> above_horizon(const Samples& samples) {
+  constexpr double kMinCosine = 1e-9;
+  std::vector<std::size_t> above;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (std::min(samples.pairs[i].wi.z, samples.pairs[i].wo.z) > kMinCosine) above.push_back(i);
+  return above;
+}
+
 /// One conversion.
 class Converter {
  public:
-  Converter(const Source& source, const ConvertOptions& options)
-      : source_(source), options_(options), brdf_(source.ref().unclamped()), mean_(brdf_) {
-    if (options.cells < 2 || options.cells > 1000)
-      throw Error(fmt::format("expected 2 to 1000 cells, found {}", options.cells));
-    const Findings& found = source.findings;
-    if (!found.left_out.empty()) lose("{}", fmt::join(found.left_out, ", "));
-    if (!found.illuminant.empty()) lose("spectra became linear Rec. 709 ({})", found.illuminant);
-  }
-
-  Converted run(std::string_view format) {
-    if (format != "openmaterial" && source_.findings.origin != Origin{}) lose("licence, authors and origin");
-    if (const auto& comments = source_.findings.comments; format != "zemax" && !comments.empty())
-      lose("{}", named_comments(comments));
-    else if (const std::string& remark = source_.findings.description;
-             has_own_remark(source_) && !remark.empty() && !has_place_for_name(format))
-      lose("the remark '{}'", printable(remark, 120));
-    if (format == "merl") return merl();
-    if (format == "rgl") return rgl();
-    if (format == "mbsdf") return mbsdf();
-    if (format == "zemax") return zemax();
-    if (format == "utia") return utia();
-    if (format == "tensortree") return tensor_tree();
-    if (format == "openmaterial") return openmaterial();
-    if (format == "exr") return slices();
-    if (format == "model") return kept(format_model(to_model(source_)));
-    if (format == "burnish") return compact();
-    if (format == "astm" || format == "csv") return scattered(format == "astm");
-    throw Error("convert: " + expected_one_of(kConvertFormats, format));
-  }
+  Converter(const Source& source, const ConvertOptions& options, Losses losses)
+      : source_(source),
+        options_(options),
+        brdf_(source.ref().unclamped()),
+        mean_(brdf_),
+        losses_(std::move(losses)) {}
 
  private:
   template <class... T>
@@ -274,6 +256,7 @@ class Converter {
     return tabulate_half_diff(SymmetrizedBrdf(brdf), n, n, 2 * n, false);
   }
 
+ public:
   Converted merl() {
     require_grey_or_rgb("MERL");
     const auto* table = std::get_if<HalfDiffTable>(&source_.brdf);
@@ -408,20 +391,13 @@ class Converter {
     return kept(std::move(made_text.text));
   }
 
+  Converted model() { return kept(format_model(to_model(source_))); }
+
   Converted compact() {
     const Model model = to_model(source_);
     if (options_.notes) return kept(format_compact(model, CompactContent::model_and_notes));
     if (model.notes != Model{}.notes) lose("the notes of the fit");
     return kept(format_compact(model));
-  }
-
-  // Which samples have both directions so far above the horizon that a reader sees them there.
-  static std::vector<std::size_t> above_horizon(const Samples& samples) {
-    constexpr double kMinCosine = 1e-9;
-    std::vector<std::size_t> above;
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      if (std::min(samples.pairs[i].wi.z, samples.pairs[i].wo.z) > kMinCosine) above.push_back(i);
-    return above;
   }
 
   Converted scattered(bool astm) {
@@ -447,6 +423,7 @@ class Converter {
     return kept(astm ? samples_astm(*samples, lambda) : samples_csv(*samples, lambda));
   }
 
+ private:
   const Source& source_;
   const ConvertOptions& options_;
   const BrdfRef brdf_;  // values below zero stay
@@ -537,13 +514,95 @@ Samples table_entries(const Source& source) {
   return list.take();
 }
 
+namespace {
+
+/// What the source's file says and no file of this format has a place for.
+Losses left_behind(const Source& source, const Format& format) {
+  const Findings& found = source.findings;
+  Losses losses;
+  if (!found.left_out.empty()) losses.push_back(fmt::format("{}", fmt::join(found.left_out, ", ")));
+  if (!found.illuminant.empty())
+    losses.push_back(fmt::format("spectra became linear Rec. 709 ({})", found.illuminant));
+  if (!format.keeps_origin && found.origin != Origin{}) losses.push_back("licence, authors and origin");
+  if (!format.keeps_comments && !found.comments.empty())
+    losses.push_back(named_comments(found.comments));
+  else if (!format.keeps_name && has_own_remark(source) && !found.description.empty())
+    losses.push_back(fmt::format("the remark '{}'", printable(found.description, 120)));
+  return losses;
+}
+
+Converted written(const Source& source, std::string_view name, const ConvertOptions& options) {
+  if (options.cells < 2 || options.cells > 1000)
+    throw Error(fmt::format("expected 2 to 1000 cells, found {}", options.cells));
+  const Format* const format = format_to(name);
+  if (!format) throw Error("convert: " + expected_one_of(convert_formats(), name));
+  return format->write(source, options, left_behind(source, *format));
+}
+
+}  // namespace
+
+std::vector<std::string_view> convert_formats() {
+  std::vector<std::string_view> names;
+  for (const Format& format : formats())
+    if (format.write) names.push_back(format.to);
+  return names;
+}
+
 Converted convert(const Source& source, std::string_view format, const ConvertOptions& options) {
   try {
-    return Converter(source, options).run(format);
+    return written(source, format, options);
   } catch (const Error& error) {
     if (std::string_view(error.what()).starts_with(source.name)) throw;
     throw Error(fmt::format("{}: {}", source.name, error.what()));
   }
+}
+
+Converted write_merl(const Source& source, const ConvertOptions& options, Losses losses) {
+  return Converter(source, options, std::move(losses)).merl();
+}
+
+Converted write_utia(const Source& source, const ConvertOptions& options, Losses losses) {
+  return Converter(source, options, std::move(losses)).utia();
+}
+
+Converted write_rgl(const Source& source, const ConvertOptions& options, Losses losses) {
+  return Converter(source, options, std::move(losses)).rgl();
+}
+
+Converted write_mbsdf(const Source& source, const ConvertOptions& options, Losses losses) {
+  return Converter(source, options, std::move(losses)).mbsdf();
+}
+
+Converted write_zemax(const Source& source, const ConvertOptions& options, Losses losses) {
+  return Converter(source, options, std::move(losses)).zemax();
+}
+
+Converted write_tensor_tree(const Source& source, const ConvertOptions& options, Losses losses) {
+  return Converter(source, options, std::move(losses)).tensor_tree();
+}
+
+Converted write_openmaterial(const Source& source, const ConvertOptions& options, Losses losses) {
+  return Converter(source, options, std::move(losses)).openmaterial();
+}
+
+Converted write_astm(const Source& source, const ConvertOptions& options, Losses losses) {
+  return Converter(source, options, std::move(losses)).scattered(true);
+}
+
+Converted write_csv(const Source& source, const ConvertOptions& options, Losses losses) {
+  return Converter(source, options, std::move(losses)).scattered(false);
+}
+
+Converted write_slices(const Source& source, const ConvertOptions& options, Losses losses) {
+  return Converter(source, options, std::move(losses)).slices();
+}
+
+Converted write_model(const Source& source, const ConvertOptions& options, Losses losses) {
+  return Converter(source, options, std::move(losses)).model();
+}
+
+Converted write_compact(const Source& source, const ConvertOptions& options, Losses losses) {
+  return Converter(source, options, std::move(losses)).compact();
 }
 
 }  // namespace burnish

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -10,11 +9,9 @@
 
 namespace burnish {
 
-/// Formats that convert writes. "exr", slices for a viewer, cannot be read back. "model" and "burnish" are
+/// Names of the formats that convert writes. "exr", slices for a viewer, cannot be read back. "model" and "burnish" are
 /// the two files of a model, format_model's and format_compact's.
-inline constexpr std::array<std::string_view, 12> kConvertFormats = {
-    "merl",         "utia", "rgl", "mbsdf", "zemax", "tensortree",
-    "openmaterial", "astm", "csv", "exr",   "model", "burnish"};
+std::vector<std::string_view> convert_formats();
 
 struct ConvertOptions {
   std::size_t count =

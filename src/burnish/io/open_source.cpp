@@ -8,25 +8,13 @@
 
 #include <burnish/baselines/baseline_file.h>
 #include <burnish/book/book_file.h>
-#include <burnish/io/alta.h>
-#include <burnish/io/astm.h>
-#include <burnish/io/cornell.h>
-#include <burnish/io/csv.h>
-#include <burnish/io/fred.h>
-#include <burnish/io/klems.h>
-#include <burnish/io/mbsdf.h>
-#include <burnish/io/merl.h>
+#include <burnish/io/formats.h>
 #include <burnish/io/neural.h>
 #include <burnish/io/np.h>
 #include <burnish/io/open_source.h>
 #include <burnish/io/openmaterial.h>
-#include <burnish/io/rgl.h>
-#include <burnish/io/speos.h>
-#include <burnish/io/tensor_tree_xml.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/io/utf16.h>
-#include <burnish/io/utia.h>
-#include <burnish/io/zemax.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/closest_name.h>
 #include <burnish/surface/surface_file.h>
@@ -34,16 +22,6 @@
 namespace burnish {
 
 namespace {
-
-/// What the readers of tables return.
-template <class File>
-Source from_table(const FileBytes& file, File parsed) {
-  return {file.name, std::move(parsed.table), std::move(parsed.findings)};
-}
-
-Source from_samples(const FileBytes& file, SampleFile parsed, SampleRule rule = SampleRule::kriged) {
-  return {file.name, ScatteredBrdf(std::move(parsed.samples), rule), std::move(parsed.findings)};
-}
 
 Source from_neural(const FileBytes& file, std::string_view name) {
   NeuralFile parsed = parse_neural(file, name);
@@ -113,73 +91,46 @@ void check_spelling(const std::string& spec) {
     throw Error(fmt::format("{}: expected a file or an analytic model, found neither{}", spec, meant));
 }
 
-Source parse_text(const FileBytes& file, const OpenOptions& options) {
-  const std::string_view text = file.text();
-  if (looks_like_openmaterial(text)) return from_samples(file, parse_openmaterial(file, options));
-  if (looks_like_baseline(text)) return to_source(file.name, parse_baseline(file));
-  if (looks_like_tensor_tree(text)) return from_table(file, parse_tensor_tree(file, options));
-  if (looks_like_klems(text)) return from_table(file, parse_klems(file, options));
-  if (looks_like_zemax(text)) return from_table(file, parse_zemax(file));
-  if (looks_like_speos(text)) return from_table(file, parse_speos(file, options));
-  if (looks_like_alta(text)) return from_samples(file, parse_alta(file, options));
-  if (looks_like_neural(text)) return from_neural(file, {});
-  if (looks_like_fred(text)) return from_samples(file, parse_fred(file, options));
-  if (looks_like_astm(text)) return from_samples(file, parse_astm(file, options));
-  if (looks_like_csv(text)) return from_samples(file, parse_csv(file, options));
-  if (looks_like_cornell(text))
-    return from_samples(file, parse_cornell(file, options), SampleRule::mean_in_half_difference);
-  if (looks_like_np(text))
-    throw Error::in_file(file.name, "np:FILE#NAME for one of its codes, a decoder.f32 beside it",
-                         "the file alone");
-  throw Error(file.name, 0,
-              "a measurement, neural encoding, baseline or model (`burnish help formats` lists what is read)",
-              fmt::format("something that starts with {}", in_quotes(text.substr(0, 16))));
-}
+/// The format that a file looks like, and the file's text where it was UTF-16.
+struct ToldFile {
+  const Format* format;
+  std::optional<FileBytes> converted;
+};
 
-Source parse_file(const FileBytes& file, const OpenOptions& options) {
+ToldFile told(const FileBytes& file) {
   // Binary formats first: their first bytes are unmistakable.
-  if (looks_like_book(file.bytes))
-    throw Error::in_file(file.name,
-                         "book:FILE#NAME for one material of a book (`burnish info FILE` names them)",
-                         "the book alone");
-  if (looks_like_surface(file.bytes))
-    throw Error::in_file(
-        file.name, "surface:FILE#COLUMN,ROW for one texel of a surface (`burnish info FILE` says how many)",
-        "the surface alone");
-  if (looks_like_model(file.bytes)) return to_source(file.name, parse_model(file));
-  if (looks_like_rgl(file.bytes)) return from_table(file, parse_rgl(file, options));
-  if (looks_like_mbsdf(file.bytes)) return from_table(file, parse_mbsdf(file));
-  if (looks_like_utia(file.bytes)) return from_table(file, parse_utia(file));
-  if (looks_like_merl(file.bytes)) return from_table(file, parse_merl(file));
-  if (const auto converted = from_utf16(file)) return parse_text(*converted, options);
-  return parse_text(file, options);
+  if (const Format* binary = binary_format_of(file)) return {binary, {}};
+  std::optional<FileBytes> converted = from_utf16(file);
+  const Format* format = text_format_of(converted ? *converted : file);
+  return {format, std::move(converted)};
 }
 
 }  // namespace
 
 Source parse_source(const FileBytes& file, const OpenOptions& options) {
-  Source source = parse_file(file, options);
+  const auto [format, converted] = told(file);
+  const FileBytes& bytes = converted ? *converted : file;
+  if (!format)
+    throw Error(
+        bytes.name, 0,
+        "a measurement, neural encoding, baseline or model (`burnish help formats` lists what is read)",
+        fmt::format("something that starts with {}", in_quotes(bytes.text().substr(0, 16))));
+  Source source = format->parse(bytes, options);
   source.clamp_negatives = options.clamp_negatives;
   return source;
 }
 
 bool looks_like_source(const FileBytes& file) {
   constexpr std::size_t kHead = 1 << 16;
-  const std::span<const std::byte> bytes = file.bytes;
-  // pictures are OpenEXR files too, and lists JSON
+  // pictures are OpenEXR files too
   const bool is_exr = file.text().starts_with("\x76\x2f\x31\x01");
   if (is_exr && file.text().substr(0, kHead).find("burnish") == std::string_view::npos) return false;
-  if (looks_like_book(bytes) || looks_like_surface(bytes) || looks_like_model(bytes) ||
-      looks_like_rgl(bytes) || looks_like_mbsdf(bytes) || looks_like_utia(bytes) || looks_like_merl(bytes))
-    return true;
-  const std::optional<FileBytes> converted = from_utf16(file);
+  const auto [format, converted] = told(file);
+  if (!format) return false;
+  // lists are JSON, as baselines are
   const std::string_view text = converted ? converted->text() : file.text();
-  return looks_like_openmaterial(text) ||
-         (looks_like_baseline(text) && text.find("\"kind\"") != std::string_view::npos) ||
-         looks_like_tensor_tree(text) || looks_like_klems(text) || looks_like_zemax(text) ||
-         looks_like_speos(text) || looks_like_alta(text) || looks_like_neural(text) ||
-         looks_like_fred(text) || looks_like_astm(text) || looks_like_csv(text) || looks_like_cornell(text) ||
-         looks_like_np(text);
+  return !looks_like_baseline(text) || looks_like_openmaterial(text) ||
+         text.find("\"kind\"") != std::string_view::npos;
 }
 
 Source open_source(const std::string& spec, const OpenOptions& options) {

@@ -25,7 +25,7 @@ const TypeInfo& info_of(TensorType type) noexcept {
   return kTypes[static_cast<std::size_t>(type) - 1];
 }
 
-std::string printable(std::string_view name) {
+std::string field_name(std::string_view name) {
   std::string result(name.substr(0, 40));
   std::replace_if(
       result.begin(), result.end(), [](unsigned char c) { return c < 0x20 || c > 0x7e; }, '?');
@@ -42,7 +42,7 @@ Tensor parse_field(const FileBytes& file, ByteReader& reader) {
   const auto dimensions = reader.number<std::uint16_t>("a number of dimensions");
   const auto type = reader.number<std::uint8_t>("a type");
   if (type < 1 || type > std::size(kTypes))
-    reader.fail(fmt::format("a type from 1 to {} for {}", std::size(kTypes), printable(tensor.name)),
+    reader.fail(fmt::format("a type from 1 to {} for {}", std::size(kTypes), field_name(tensor.name)),
                 std::to_string(type));
   tensor.type = static_cast<TensorType>(type);
   tensor.offset = reader.number<std::uint64_t>("a data offset");
@@ -53,13 +53,13 @@ Tensor parse_field(const FileBytes& file, ByteReader& reader) {
   for (int d = 0; d < dimensions; ++d) {
     const auto length = reader.number<std::uint64_t>("shape");
     if (length > 0 && bytes > reader.size() / length)
-      reader.fail(fmt::format("a shape of {} that fits in {} bytes", printable(tensor.name), reader.size()),
+      reader.fail(fmt::format("a shape of {} that fits in {} bytes", field_name(tensor.name), reader.size()),
                   fmt::format("{} entries in dimension {}", length, d));
     bytes *= length;
     tensor.shape.push_back(length);
   }
   if (tensor.offset > reader.size() || bytes > reader.size() - tensor.offset)
-    reader.fail(fmt::format("{} bytes of {} within {} bytes", bytes, printable(tensor.name), reader.size()),
+    reader.fail(fmt::format("{} bytes of {} within {} bytes", bytes, field_name(tensor.name), reader.size()),
                 fmt::format("offset {}", tensor.offset));
   tensor.data = std::span(file.bytes).subspan(tensor.offset, bytes);
   return tensor;
@@ -101,7 +101,7 @@ std::vector<Tensor> parse_tensor_file(const FileBytes& file) {
   std::sort(order.begin(), order.end(), [](auto* a, auto* b) { return a->name < b->name; });
   for (std::size_t i = 1; i < order.size(); ++i)
     if (order[i]->name == order[i - 1]->name)
-      throw Error::in_file(file.name, "each field once", "two fields named " + printable(order[i]->name));
+      throw Error::in_file(file.name, "each field once", "two fields named " + field_name(order[i]->name));
 
   // front to back, each datum starts where the header and the data before it have ended.
   std::sort(order.begin(), order.end(), [](auto* a, auto* b) {
@@ -111,7 +111,7 @@ std::vector<Tensor> parse_tensor_file(const FileBytes& file) {
   for (const Tensor* tensor : order) {
     if (tensor->offset < end)
       throw Error(file.name, tensor->offset,
-                  fmt::format("data of {} from offset {} on", printable(tensor->name), end),
+                  fmt::format("data of {} from offset {} on", field_name(tensor->name), end),
                   "the header's or another field's bytes");
     end = tensor->offset + tensor->data.size();
   }

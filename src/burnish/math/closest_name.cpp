@@ -61,4 +61,8 @@ std::string expected_one_of(std::span<const std::string_view> names, std::string
                      did_you_mean(word, names));
 }
 
+std::string listed(std::span<const std::string_view> names, std::string_view last_by) {
+  return fmt::format("{} {} {}", fmt::join(names.first(names.size() - 1), ", "), last_by, names.back());
+}
+
 }  // namespace burnish

@@ -21,4 +21,7 @@ std::string did_you_mean(std::string_view word, std::span<const std::string_view
 /// "expected one of A, B, found 'WORD'; did you mean 'A'?", what an Error says of a word that is none of the names.
 std::string expected_one_of(std::span<const std::string_view> names, std::string_view word);
 
+/// Names in a sentence, two or more: "A, B or C". `last_by` stands before the last one.
+std::string listed(std::span<const std::string_view> names, std::string_view last_by = "or");
+
 }  // namespace burnish

@@ -27,6 +27,8 @@ TEST(ClosestName, FindsWhatWasMeantAndNothingElse) {
   EXPECT_EQ(did_you_mean("x-rays", verbs), "");
   EXPECT_EQ(expected_one_of(verbs, "inof"),
             "expected one of info, fit, compare, convert, found 'inof'; did you mean 'info'?");
+  EXPECT_EQ(listed(verbs), "info, fit, compare or convert");
+  EXPECT_EQ(listed(std::span(verbs).first(2), "and"), "info and fit");
 }
 
 }  // namespace

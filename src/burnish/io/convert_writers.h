@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <burnish/io/convert.h>
+
+namespace burnish {
+
+/// Writers of convert, for the rows of formats.cpp. They get what the source's file says more (`losses`), and add what
+/// the format says less. Throw Error where the format cannot hold the source.
+using Losses = std::vector<std::string>;
+Converted write_merl(const Source& source, const ConvertOptions& options, Losses losses);
+Converted write_utia(const Source& source, const ConvertOptions& options, Losses losses);
+Converted write_rgl(const Source& source, const ConvertOptions& options, Losses losses);
+Converted write_mbsdf(const Source& source, const ConvertOptions& options, Losses losses);
+Converted write_zemax(const Source& source, const ConvertOptions& options, Losses losses);
+Converted write_tensor_tree(const Source& source, const ConvertOptions& options, Losses losses);
+Converted write_openmaterial(const Source& source, const ConvertOptions& options, Losses losses);
+Converted write_astm(const Source& source, const ConvertOptions& options, Losses losses);
+Converted write_csv(const Source& source, const ConvertOptions& options, Losses losses);
+Converted write_slices(const Source& source, const ConvertOptions& options, Losses losses);
+Converted write_model(const Source& source, const ConvertOptions& options, Losses losses);
+Converted write_compact(const Source& source, const ConvertOptions& options, Losses losses);
+
+}  // namespace burnish

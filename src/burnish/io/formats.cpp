@@ -1,0 +1,348 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <burnish/baselines/baseline_file.h>
+#include <burnish/book/book_file.h>
+#include <burnish/factors/compact_file.h>
+#include <burnish/io/alta.h>
+#include <burnish/io/astm.h>
+#include <burnish/io/convert_writers.h>
+#include <burnish/io/cornell.h>
+#include <burnish/io/csv.h>
+#include <burnish/io/formats.h>
+#include <burnish/io/fred.h>
+#include <burnish/io/klems.h>
+#include <burnish/io/mbsdf.h>
+#include <burnish/io/merl.h>
+#include <burnish/io/neural.h>
+#include <burnish/io/np.h>
+#include <burnish/io/openmaterial.h>
+#include <burnish/io/rgl.h>
+#include <burnish/io/speos.h>
+#include <burnish/io/tensor_tree_xml.h>
+#include <burnish/io/utia.h>
+#include <burnish/io/window_xml.h>
+#include <burnish/io/zemax.h>
+#include <burnish/surface/surface_file.h>
+
+namespace burnish {
+
+namespace {
+
+/// Format::looks_like by a function of the bytes or the text.
+template <auto looks_like>
+bool seen(const FileBytes& file) {
+  if constexpr (requires { looks_like(file.text()); })
+    return looks_like(file.text());
+  else
+    return looks_like(std::span<const std::byte>(file.bytes));
+}
+
+/// Format::parse by a reader, which returns a table or samples with findings, and takes options or none.
+template <auto parse>
+Source read_by(const FileBytes& file, const OpenOptions& options) {
+  auto parsed = [&] {
+    if constexpr (requires { parse(file, options); })
+      return parse(file, options);
+    else
+      return parse(file);
+  }();
+  if constexpr (requires { parsed.samples; })
+    return {file.name, ScatteredBrdf(std::move(parsed.samples), SampleRule::kriged),
+            std::move(parsed.findings)};
+  else
+    return {file.name, std::move(parsed.table), std::move(parsed.findings)};
+}
+
+Source read_cornell(const FileBytes& file, const OpenOptions& options) {
+  SampleFile parsed = parse_cornell(file, options);
+  return {file.name, ScatteredBrdf(std::move(parsed.samples), SampleRule::mean_in_half_difference),
+          std::move(parsed.findings)};
+}
+
+Source read_model(const FileBytes& file, const OpenOptions&) {
+  return to_source(file.name, parse_model(file));
+}
+
+Source read_baseline(const FileBytes& file, const OpenOptions&) {
+  return to_source(file.name, parse_baseline(file));
+}
+
+Source read_neural(const FileBytes& file, const OpenOptions&) {
+  NeuralFile parsed = parse_neural(file, {});
+  return {fmt::format("{}#{}", file.name, parsed.name), std::move(parsed.brdf), std::move(parsed.findings)};
+}
+
+/// Files of several BRDFs, one of which has to be named.
+Source refuse_book(const FileBytes& file, const OpenOptions&) {
+  throw Error::in_file(file.name,
+                       "book:FILE#NAME for one material of a book (`burnish info FILE` names them)",
+                       "the book alone");
+}
+
+Source refuse_surface(const FileBytes& file, const OpenOptions&) {
+  throw Error::in_file(
+      file.name, "surface:FILE#COLUMN,ROW for one texel of a surface (`burnish info FILE` says how many)",
+      "the surface alone");
+}
+
+Source refuse_np(const FileBytes& file, const OpenOptions&) {
+  throw Error::in_file(file.name, "np:FILE#NAME for one of its codes, a decoder.f32 beside it",
+                       "the file alone");
+}
+
+/// A surface's files are a model's with more in them.
+bool is_exr_model(const FileBytes& file) {
+  return looks_like_model(file.bytes) && !looks_like_compact(file.bytes) && !looks_like_surface(file.bytes);
+}
+
+bool is_compact_model(const FileBytes& file) {
+  return looks_like_compact(file.bytes) && !looks_like_surface(file.bytes);
+}
+
+/// A line of text may stand before the XML of a window system; tensor trees are such systems too, and OpenMATERIAL is
+/// JSON as baselines are.
+bool is_zemax(const FileBytes& file) {
+  return looks_like_zemax(file.text()) && !looks_like_window_xml(file.text());
+}
+
+bool is_klems(const FileBytes& file) {
+  return looks_like_klems(file.text()) && !looks_like_tensor_tree(file.text());
+}
+
+bool is_baseline(const FileBytes& file) {
+  return looks_like_baseline(file.text()) && !looks_like_openmaterial(file.text());
+}
+
+// In the order of `burnish help formats`.
+constexpr Format kFormats[] = {
+    {.title = "MERL",
+     .to = "merl",
+     .endings = ".binary",
+     .holds = "half/difference cells, RGB, isotropic",
+     .told = Told::by_sizes,
+     .looks_like = seen<looks_like_merl>,
+     .parse = read_by<parse_merl>,
+     .write = write_merl,
+     .takes_cells = true},
+    {.title = "UTIA",
+     .to = "utia",
+     .endings = ".bin",
+     .holds = "6 x 48 directions of light and view, RGB",
+     .told = Told::by_length,
+     .looks_like = seen<looks_like_utia>,
+     .parse = read_by<parse_utia>,
+     .write = write_utia},
+    {.title = "RGL",
+     .to = "rgl",
+     .endings = ".bsdf",
+     .holds = "adaptive nodes, RGB or spectra",
+     .told = Told::by_signature,
+     .looks_like = seen<looks_like_rgl>,
+     .parse = read_by<parse_rgl>,
+     .write = write_rgl,
+     .other_endings = ".txt",
+     .keeps_name = true},
+    {.title = "MBSDF",
+     .to = "mbsdf",
+     .endings = ".mbsdf",
+     .holds = "even angles, grey or RGB, isotropic",
+     .told = Told::by_signature,
+     .looks_like = seen<looks_like_mbsdf>,
+     .parse = read_by<parse_mbsdf>,
+     .write = write_mbsdf,
+     .takes_cells = true},
+    {.title = "Zemax",
+     .to = "zemax",
+     .endings = ".bsdf",
+     .holds = "angles around the mirror direction, grey or XYZ",
+     .looks_like = is_zemax,
+     .parse = read_by<parse_zemax>,
+     .write = write_zemax,
+     .other_endings = ".txt",
+     .keeps_name = true,
+     .keeps_comments = true},
+    {.title = "tensor tree",
+     .to = "tensortree",
+     .endings = ".xml",
+     .holds = "cubes of Shirley-Chiu squares, grey (rank 3: of rank 3 alone)",
+     .looks_like = seen<looks_like_tensor_tree>,
+     .parse = read_by<parse_tensor_tree>,
+     .write = write_tensor_tree,
+     .takes_cells = true,
+     .keeps_name = true},
+    {.title = "Klems",
+     .endings = ".xml",
+     .holds = "patches of both hemispheres, grey",
+     .looks_like = is_klems,
+     .parse = read_by<parse_klems>},
+    {.title = "Speos",
+     .endings = ".anisotropicbsdf, .brdf",
+     .holds = "theta and phi of each incidence, grey or spectra",
+     .looks_like = seen<looks_like_speos>,
+     .parse = read_by<parse_speos>},
+    {.title = "OpenMATERIAL 3D",
+     .to = "openmaterial",
+     .endings = ".xompt",
+     .holds = "scattered spectra, isotropic",
+     .looks_like = seen<looks_like_openmaterial>,
+     .parse = read_by<parse_openmaterial>,
+     .write = write_openmaterial,
+     .other_endings = ".json",
+     .takes_count = true,
+     .keeps_name = true,
+     .keeps_origin = true},
+    {.title = "ALTA",
+     .endings = ".dat",
+     .holds = "scattered, in coordinates of its own, grey or RGB",
+     .looks_like = seen<looks_like_alta>,
+     .parse = read_by<parse_alta>},
+    {.title = "ASTM E1392",
+     .to = "astm",
+     .endings = ".astm",
+     .holds = "scattered, grey, RGB or spectra",
+     .told = Told::by_columns,
+     .looks_like = seen<looks_like_astm>,
+     .parse = read_by<parse_astm>,
+     .write = write_astm,
+     .other_endings = ".txt",
+     .takes_count = true,
+     .entries_first = true},
+    {.title = "CSV",
+     .to = "csv",
+     .endings = ".csv, .txt",
+     .holds = "scattered, grey, RGB or spectra",
+     .told = Told::by_columns,
+     .looks_like = seen<looks_like_csv>,
+     .parse = read_by<parse_csv>,
+     .write = write_csv,
+     .takes_count = true,
+     .entries_first = true},
+    {.title = "FRED",
+     .endings = ".txt",
+     .holds = "scattered, grey, isotropic",
+     .looks_like = seen<looks_like_fred>,
+     .parse = read_by<parse_fred>},
+    {.title = "Cornell",
+     .endings = ".brdf",
+     .holds = "scattered spectra, isotropic",
+     .told = Told::by_columns,
+     .looks_like = seen<looks_like_cornell>,
+     .parse = read_cornell},
+    {.title = "EXR slices",
+     .to = "exr",
+     .endings = ".exr",
+     .holds = "half/difference cells to look at",
+     .write = write_slices,
+     .takes_cells = true},
+    {.title = "model, OpenEXR",
+     .to = "model",
+     .endings = ".exr",
+     .holds = "what fit writes",
+     .told = Told::by_signature,
+     .looks_like = is_exr_model,
+     .parse = read_model,
+     .write = write_model},
+    {.title = "model, compact",
+     .to = "burnish",
+     .endings = ".burnish",
+     .holds = "what fit writes",
+     .told = Told::by_signature,
+     .looks_like = is_compact_model,
+     .parse = read_model,
+     .write = write_compact,
+     .takes_notes = true},
+    {.title = "surface",
+     .endings = ".burnish, .exr",
+     .holds = "surface:FILE#COLUMN,ROW, what fit-surface writes",
+     .told = Told::by_signature,
+     .looks_like = seen<looks_like_surface>,
+     .parse = refuse_surface,
+     .written_elsewhere = true},
+    {.title = "book of a library",
+     .endings = ".burnish",
+     .holds = "book:FILE#NAME, what book writes",
+     .told = Told::by_signature,
+     .looks_like = seen<looks_like_book>,
+     .parse = refuse_book},
+    {.title = "baseline",
+     .endings = ".json",
+     .holds = "what fit --method writes",
+     .looks_like = is_baseline,
+     .parse = read_baseline},
+    {.title = "network weights",
+     .endings = ".csv",
+     .holds = "nbrdf:FILE#NAME",
+     .looks_like = seen<looks_like_neural>,
+     .parse = read_neural},
+    {.title = "Neural Processes codes",
+     .endings = ".csv",
+     .holds = "np:FOLDER#NAME",
+     .told = Told::by_columns,
+     .looks_like = seen<looks_like_np>,
+     .parse = refuse_np},
+};
+
+/// The first format of these ways, the surest first, that the file looks like.
+const Format* told_format(const FileBytes& file, std::span<const Told> ways) {
+  for (const Told way : ways)
+    for (const Format& format : kFormats)
+      if (format.told == way && format.is_read() && format.looks_like(file)) return &format;
+  return nullptr;
+}
+
+std::string_view first_ending(const Format& format) noexcept {
+  return format.endings.substr(0, format.endings.find(','));
+}
+
+}  // namespace
+
+std::span<const Format> formats() noexcept {
+  return kFormats;
+}
+
+const Format* binary_format_of(const FileBytes& file) {
+  using enum Told;
+  static constexpr Told kWays[] = {by_signature, by_length, by_sizes};
+  return told_format(file, kWays);
+}
+
+const Format* text_format_of(const FileBytes& file) {
+  using enum Told;
+  static constexpr Told kWays[] = {by_words, by_columns};
+  return told_format(file, kWays);
+}
+
+const Format* format_to(std::string_view name) noexcept {
+  const auto* found =
+      std::ranges::find_if(kFormats, [&](const Format& f) { return f.write && f.to == name; });
+  return found == std::end(kFormats) ? nullptr : found;
+}
+
+const Format* format_ending_in(std::string_view ending) noexcept {
+  const auto* found = std::ranges::find_if(
+      kFormats, [&](const Format& f) { return f.write && !ending.empty() && first_ending(f) == ending; });
+  return found == std::end(kFormats) ? nullptr : found;
+}
+
+std::vector<std::string> endings_of(const Format& format) {
+  std::vector<std::string> endings;
+  for (std::string_view rest : {format.endings, format.other_endings})
+    while (!rest.empty()) {
+      const std::size_t comma = std::min(rest.find(", "), rest.size());
+      endings.emplace_back(rest.substr(0, comma));
+      rest.remove_prefix(std::min(comma + 2, rest.size()));
+    }
+  return endings;
+}
+
+std::vector<std::string_view> naming_endings() {
+  std::vector<std::string_view> endings;
+  for (const Format& format : kFormats)
+    if (format.write && format_ending_in(first_ending(format)) == &format)
+      endings.push_back(first_ending(format));
+  return endings;
+}
+
+}  // namespace burnish
