@@ -51,8 +51,8 @@ std::optional<ValueKind> kind_of_name(std::string_view name) {
   angle.erase(std::remove(angle.begin(), angle.end(), '_'), angle.end());
   if (angle.starts_with("theta")) angle.erase(0, 5);
   if (angle == "i" || angle == "in") return ValueKind::f_cos_i;
-  constexpr std::array<std::string_view, 5> kOutgoing = {"o", "r", "s", "v", "out"};
-  if (is_one_of(kOutgoing, angle)) return ValueKind::f_cos_o;
+  constexpr std::array<std::string_view, 5> kViewerNames = {"o", "r", "s", "v", "out"};
+  if (is_one_of(kViewerNames, angle)) return ValueKind::f_cos_o;
   return std::nullopt;
 }
 
