@@ -11,6 +11,7 @@
 #include <burnish/io/cornell.h>
 #include <burnish/io/csv.h>
 #include <burnish/io/formats.h>
+#include <burnish/io/fourier.h>
 #include <burnish/io/fred.h>
 #include <burnish/io/klems.h>
 #include <burnish/io/mbsdf.h>
@@ -39,7 +40,7 @@ bool seen(const FileBytes& file) {
     return looks_like(std::span<const std::byte>(file.bytes));
 }
 
-/// Format::parse by a reader, which returns a table or samples with findings, and takes options or none.
+/// Format::parse by a reader, which returns a table, samples or a function with findings, and takes options or none.
 template <auto parse>
 Source read_by(const FileBytes& file, const OpenOptions& options) {
   auto parsed = [&] {
@@ -51,6 +52,8 @@ Source read_by(const FileBytes& file, const OpenOptions& options) {
   if constexpr (requires { parsed.samples; })
     return {file.name, ScatteredBrdf(std::move(parsed.samples), SampleRule::kriged),
             std::move(parsed.findings)};
+  else if constexpr (requires { parsed.brdf; })
+    return {file.name, std::move(parsed.brdf), std::move(parsed.findings)};
   else
     return {file.name, std::move(parsed.table), std::move(parsed.findings)};
 }
@@ -182,6 +185,12 @@ constexpr Format kFormats[] = {
      .holds = "theta and phi of each incidence, grey or spectra",
      .looks_like = seen<looks_like_speos>,
      .parse = read_by<parse_speos>},
+    {.title = "Fourier BSDF",
+     .endings = ".bsdf",
+     .holds = "cosine series between splines, grey or RGB, isotropic",
+     .told = Told::by_signature,
+     .looks_like = seen<looks_like_fourier>,
+     .parse = read_by<parse_fourier>},
     {.title = "OpenMATERIAL 3D",
      .to = "openmaterial",
      .endings = ".xompt",

@@ -40,6 +40,39 @@ inline std::string mbsdf_seed() {
   return bytes;
 }
 
+/// A Fourier BSDF of these cosines. `series_of(mu_i, mu_o)` has the coefficients of a pair, channel after channel.
+inline std::string fourier_bytes(const std::vector<float>& mu, std::uint32_t channels,
+                                 std::vector<float> (*series_of)(float mu_i, float mu_o),
+                                 const std::string& remarks = "") {
+  std::string table, coefficients;
+  std::uint32_t count = 0, longest = 0;
+  for (const float mu_o : mu)
+    for (const float mu_i : mu) {
+      const std::vector<float> series = series_of(mu_i, mu_o);
+      const auto length = static_cast<std::uint32_t>(series.size()) / channels;
+      append(table, count);
+      append(table, length);
+      for (const float a : series) append(coefficients, a);
+      count += length * channels;
+      longest = length > longest ? length : longest;
+    }
+  std::string bytes = "SCATFUN\x01";
+  const auto size = static_cast<std::uint32_t>(mu.size());
+  for (const std::uint32_t word :
+       {1u, size, count, longest, channels, 1u, static_cast<std::uint32_t>(remarks.size()), 0u, 0u})
+    append(bytes, word);
+  for (const float word : {1.5f, 0.1f, 0.1f, 0.f, 0.f}) append(bytes, word);
+  for (const float m : mu) append(bytes, m);
+  bytes.append(4 * mu.size() * mu.size(), '\0');
+  return bytes + table + coefficients + remarks;
+}
+
+inline std::string fourier_seed() {
+  return fourier_bytes({-1, 0, 0, 1}, 1, [](float mu_i, float mu_o) {
+    return mu_i < 0 && mu_o > 0 ? std::vector<float>{0.3f, 0.1f, -0.05f} : std::vector<float>{};
+  });
+}
+
 inline std::string rgl_seed() {
   burnish::RglOptions options;
   options.theta_i_count = 2;
@@ -226,6 +259,7 @@ inline std::vector<std::pair<std::string, std::string>> all_seeds() {
           {"rgl", rgl_seed()},
           {"model", model_seed()},
           {"compact", compact_seed()},
+          {"fourier", fourier_seed()},
           {"cornell", kCornell},
           {"astm", kAstm},
           {"csv", kCsv},
