@@ -1,12 +1,11 @@
 #!/usr/bin/env bash
-# three.js reads an OpenEXR file with channels of two types as numbers of 1e16 instead of the file's, without a word.
+# three.js reads an OpenEXR file whose colours have two types as numbers of 1e16, without a word.
 #
 # Versions: three 0.187.0, OpenEXR 3.5.3 (which writes the file, and reads it back as it was).
-# Expected: the values. "OpenEXR File Layout" gives each channel a pixel type of its own, and a FLOAT depth beside HALF
-#   colours is what many files have.
-# Seen: EXRLoader takes one type for all channels. With R and G of FLOAT and B of HALF, blue is 2.4e16 in the place
-#   of 212, other texels have the values of their neighbours; read as half floats (which the loader does unless told
-#   otherwise) it is 65504. Whoever writes colour as FLOAT and a mask as HALF has to give both one type.
+# Expected: the values, or an error: "OpenEXR File Layout" gives each channel a pixel type of its own.
+# Seen: EXRLoader takes one type for all colour channels. With R and G of FLOAT and B of HALF, blue is 2.4e16 in the
+#   place of 212, and other texels have the values of neighbours; asked for half floats, it is 65504. A depth Z of FLOAT
+#   beside colours of HALF does no harm. Whoever saves memory on one colour has to save it on all.
 #
 #   first texel of row 3: 12 112 212 by OpenEXR, 12 112 23693719664328704 by three.js
 set -eu
