@@ -10,9 +10,9 @@
 #include <burnish/baselines/evaluation_cost.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/file.h>
+#include <burnish/fitting/choosing/fetch_plan.h>
 #include <burnish/fitting/fit_file.h>
 #include <burnish/fitting/parametric/material_fit.h>
-#include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
 #include <burnish/shaders/cost_json.h>

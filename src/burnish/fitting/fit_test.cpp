@@ -12,8 +12,8 @@
 #include <burnish/factors/compact_file.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/baselines/baselines.h>
+#include <burnish/fitting/choosing/fetch_plan.h>
 #include <burnish/fitting/fit_file.h>
-#include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/io/open_source.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
-#include <burnish/fitting/plans/fit_plan.h>
+#include <burnish/fitting/choosing/fit_plan.h>
 #include <burnish/fitting/refinement/refine.h>
 #include <burnish/math/parallel.h>
 #include <burnish/testing/log_models.h>

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <burnish/fitting/plans/fit_plan.h>
+#include <burnish/fitting/choosing/fit_plan.h>
 #include <burnish/fitting/refinement/rounding.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/testing/log_models.h>

@@ -1,0 +1,227 @@
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/fitting/choosing/lobe_plan.h>
+#include <burnish/fitting/choosing/order_tables.h>
+#include <burnish/fitting/choosing/spec_layout.h>
+#include <burnish/reflectance/mirror_asymmetry.h>
+
+namespace burnish {
+
+namespace {
+
+// Highlights are narrow, but a gamma-corrected picture shows their skirts as wide rings: a mild crowding at
+// the normal. theta_m spans twice the angle, and only its beginning matters.
+constexpr Warp kHalfWarp{WarpKind::power, 0.8}, kDeviationWarp{WarpKind::power, 0.5};
+constexpr Warp kSkewWarp{WarpKind::power, 0.7};
+// A direction between one of the two and the half vector; both together are reciprocal.
+constexpr Projection kProjectSkew{.wi = 1, .wo = 0.5}, kProjectSkewSwapped{.wi = 0.5, .wo = 1};
+
+// Of an isotropic model: from how many texels on it has grids, and how many its 1-D tables take at most.
+constexpr double kGridTexels = 1500, kThreeGridTexels = 6000, kMaxLineTexels = 2000;
+// Of the factor that tells mirror images apart: nodes from one side to the other, where 3 and 7 did no
+// better, and its share, where .04 to .4 did about as well.
+constexpr int kTwistNodes = 5;
+constexpr double kTwistShare = 0.25;
+// Of what the order of the directions changes: a grid for all lobes, its nodes along theta_i, more where other factors
+// have grids too, and a line for each lobe.
+constexpr int kOrderNodes = 4, kManyOrderNodes = 8;
+constexpr double kOrderShare = 0.3, kOrderLineShare = 0.1;
+constexpr Warp kOrderWarp{WarpKind::power, 0.5};
+constexpr int kMaxLineNodes = 1024;  // nodes of a line: finer than any measurement
+
+// More texels for each of few lobes resolve rings, more lobes follow how the highlight changes with the
+// angles.
+int lobes_for(double texels) {
+  return std::clamp(static_cast<int>(std::lround(std::log2(texels / 82))), 1, 8);
+}
+
+// Numbers of one table's warps and of its uses' projections.
+std::size_t numbers(const PlannedFactor& factor, std::size_t lobes) {
+  std::size_t sum = std::size_t{factor.warp.kind != WarpKind::identity} +
+                    std::size_t{factor.second_warp.kind != WarpKind::identity};
+  if (!factor.every_lobe) sum *= lobes;
+  for (const Projection& use : factor.uses) sum += lobes * coefficient_count(use);
+  return factor.shape == TableShape::grid ? sum + lobes * coefficient_count(factor.second) : sum;
+}
+
+std::size_t number_bytes(const std::vector<PlannedFactor>& factors, std::size_t lobes, std::size_t channels) {
+  std::size_t sum = lobes * channels;
+  for (const PlannedFactor& factor : factors) sum += numbers(factor, lobes);
+  return sum * kNumberBytes;
+}
+
+// A node of a table with one channel for all takes this share of a texel: shared exponents serve no single
+// channel, whose table is half floats.
+double node_cost(const PlannedFactor& factor, std::size_t channels, std::size_t texel_bytes) {
+  if (!factor.grey) return 1;
+  const std::size_t one = texel_bytes == 4 && channels == 3 ? 2 : texel_bytes / channels;
+  return static_cast<double>(one) / static_cast<double>(texel_bytes);
+}
+
+// Adds a factor's table of at most `nodes` nodes.
+void add_table(const PlannedFactor& factor, double nodes, const std::string& suffix, ModelSpec& spec) {
+  const bool line = factor.shape == TableShape::line;
+  const int least = factor.shape == TableShape::disk ? 3 : 2;
+  const auto side = [](double n) { return std::min(static_cast<int>(n), kMaxLineNodes); };
+  const int width = factor.width > 0 ? factor.width : side(line ? nodes : std::sqrt(nodes)),
+            height = line               ? 1
+                     : factor.width > 0 ? side(nodes / factor.width)
+                                        : width;
+  if (width < least || (!line && height < least))
+    throw Error(fmt::format("fit: expected a budget that holds every table, found {} texels for '{}{}'",
+                            static_cast<int>(nodes), factor.name, suffix));
+  spec.tables.push_back({.name = factor.name + suffix,
+                         .layout = {.shape = factor.shape,
+                                    .width = width,
+                                    .height = height,
+                                    .warp = factor.warp,
+                                    .warp_y = factor.second_warp},
+                         .shared = factor.grey});
+}
+
+// Appends lobes of at most `texels` texels together.
+void add_lobes(const std::vector<PlannedFactor>& factors, std::size_t lobes, double texels,
+               std::size_t channels, std::size_t texel_bytes, bool numbered, ModelSpec& spec) {
+  double shares = 0;
+  for (const PlannedFactor& factor : factors)
+    shares += factor.share * static_cast<double>(factor.every_lobe ? 1 : lobes);
+  // shares are of bytes
+  const auto nodes = [&](const PlannedFactor& factor) {
+    return factor.share / shares * texels / node_cost(factor, channels, texel_bytes);
+  };
+  std::vector<std::size_t> common(factors.size());
+  for (std::size_t k = 0; k < factors.size(); ++k)
+    if (factors[k].every_lobe) {
+      common[k] = spec.tables.size();
+      add_table(factors[k], nodes(factors[k]), "", spec);
+    }
+  for (std::size_t j = 0; j < lobes; ++j) {
+    std::vector<FactorUse> lobe;
+    for (std::size_t k = 0; k < factors.size(); ++k) {
+      if (!factors[k].every_lobe)
+        add_table(factors[k], nodes(factors[k]), numbered ? std::to_string(j + 1) : "", spec);
+      const std::size_t table = factors[k].every_lobe ? common[k] : spec.tables.size() - 1;
+      for (const Projection& use : factors[k].uses)
+        lobe.push_back({.table = table, .projection = use, .projection_y = factors[k].second});
+    }
+    spec.lobes.push_back(std::move(lobe));
+  }
+}
+
+}  // namespace
+
+LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t texel_bytes) {
+  LobePlan plan{.lobes = lobes};
+  const auto line = [](const char* name, std::vector<Projection> uses, double share, Warp warp = {}) {
+    return PlannedFactor{
+        .name = name, .shape = TableShape::line, .uses = std::move(uses), .share = share, .warp = warp};
+  };
+  if (isotropic) {
+    const double texels = static_cast<double>(bytes) / static_cast<double>(texel_bytes);
+    // Beyond some hundred texels a lobe, what three 1-D tables multiply to is missing more than resolution.
+    const bool grids = texels > kGridTexels, three = texels > kThreeGridTexels;
+    const double lines = grids ? std::min(0.5, kMaxLineTexels / texels) : 1;
+    if (lobes <= 0) plan.lobes = lobes_for(lines * texels);
+    plan.factors = {line("p", {kProjectWo, kProjectWi}, 0.083), line("q", {kProjectHalf}, 0.587, kHalfWarp),
+                    line("m", {kProjectDeviation}, 0.183, kDeviationWarp),
+                    line("r", {kProjectDifference}, 0.147)};
+    if (plan.lobes > 1) {
+      // What the lobes have in common of q, rings of films above all, is finely resolved once; their own q
+      // are coarse.
+      plan.factors[1].share = 0.176;
+      plan.factors.push_back(line("z", {kProjectHalf}, 1, kHalfWarp));
+      plan.factors.back().every_lobe = true;
+      plan.factors.push_back(line("s", {kProjectSkew, kProjectSkewSwapped}, 0.15, kSkewWarp));
+    }
+    const auto grid = [&](const char* name, Projection x, Projection y) {
+      const auto warp = [](const Projection& p) { return p == kProjectDifference ? Warp{} : kDeviationWarp; };
+      plan.factors.push_back(
+          {name, TableShape::grid, {x}, (1 / lines - 1) / (three ? 3 : 1), warp(x), y, warp(y)});
+    };
+    if (grids) grid("g", kProjectHalf, kProjectDifference);
+    if (three) {
+      grid("k", kProjectDeviation, kProjectDifference);
+      grid("x", kProjectHalf, kProjectDeviation);
+    }
+    return plan;
+  }
+  // The narrow factors of a highlight take few texels; what is left is nearly all q's.
+  constexpr double kRing = 24;
+  constexpr int kWide = 12;
+  plan.lobes = lobes <= 0 ? 1 : lobes - 1;
+  if (plan.lobes < 1) throw Error("fit: expected at least two lobes for an anisotropic source, found one");
+  const double texels = static_cast<double>(bytes) / static_cast<double>(texel_bytes) / plan.lobes;
+  const double ring = kRing / std::max(texels, 4 * kRing);
+  plan.factors = {{"p", TableShape::disk, {kProjectWo, kProjectWi}, 0.04, {}, {}, {}},
+                  {"q", TableShape::disk, {kProjectHalf}, 0.96 - 2 * ring, kHalfDiskWarp, {}, {}},
+                  line("m", {kProjectDeviation}, ring, kDeviationWarp),
+                  line("r", {kProjectDifference}, ring)};
+  plan.wide = {line("a", {kProjectWo, kProjectWi}, 1), line("b", {kProjectHalf}, 1),
+               line("c", {kProjectDifference}, 1)};
+  plan.wide_texels = std::min(3 * kWide, static_cast<int>(texels / 4));
+  return plan;
+}
+
+LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texel_bytes) {
+  LobePlan plan = default_plan(bytes, lobes, source.isotropic(), texel_bytes);
+  if (!source.isotropic()) return plan;
+  const auto add = [&](std::initializer_list<PlannedFactor> factors) {
+    LobePlan more = plan;
+    more.factors.insert(more.factors.end(), factors);
+    if (plan_fits(more, bytes, source.channels(), texel_bytes)) plan = std::move(more);
+  };
+  const bool many = static_cast<double>(bytes) > kGridTexels * static_cast<double>(texel_bytes);
+  if (order_matters(source))
+    add({{.name = "c",
+          .shape = TableShape::grid,
+          .uses = {kProjectWi},
+          .share = kOrderShare * plan.lobes,
+          .second = kProjectHalf,
+          .second_warp = kOrderWarp,
+          .width = many ? kManyOrderNodes : kOrderNodes,
+          .every_lobe = true},
+         {.name = "a", .shape = TableShape::line, .uses = {kProjectWi}, .share = kOrderLineShare}});
+  if (mirror_asymmetry(source) > kMinAsymmetry)
+    add({{.name = "w",
+          .shape = TableShape::grid,
+          .uses = {kProjectTwist},
+          .share = kTwistShare,
+          .second = kProjectHalf,
+          .second_warp = kHalfWarp,
+          .width = kTwistNodes}});
+  return plan;
+}
+
+bool plan_fits(const LobePlan& plan, std::size_t bytes, std::size_t channels, std::size_t texel_bytes) {
+  try {
+    plan_to_spec(plan, bytes, channels, texel_bytes);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+ModelSpec plan_to_spec(const LobePlan& plan, std::size_t bytes, std::size_t channels,
+                       std::size_t texel_bytes) {
+  const auto lobes = static_cast<std::size_t>(plan.lobes);
+  if (lobes > 1 && std::ranges::all_of(plan.factors, &PlannedFactor::every_lobe))
+    throw Error("fit: expected a factor that each lobe has its own table of");
+  const std::size_t number_total = number_bytes(plan.factors, lobes, channels) +
+                                   (plan.wide.empty() ? 0 : number_bytes(plan.wide, 1, channels));
+  const std::size_t texels = bytes > number_total ? (bytes - number_total) / texel_bytes : 0;
+  const auto wide = static_cast<std::size_t>(plan.wide_texels);
+  ModelSpec spec;
+  if (!plan.wide.empty())
+    add_lobes(plan.wide, 1, static_cast<double>(wide), channels, texel_bytes, false, spec);
+  add_lobes(plan.factors, lobes, static_cast<double>(texels > wide ? texels - wide : 0), channels,
+            texel_bytes, true, spec);
+  return spec;
+}
+
+}  // namespace burnish
