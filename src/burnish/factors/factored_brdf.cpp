@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/factors/byte_count.h>
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/factors/lookup_scalar.h>
 
@@ -230,25 +231,13 @@ std::size_t FactoredBrdf::table_bytes() const noexcept {
 }
 
 std::size_t FactoredBrdf::bytes() const noexcept {
-  // Bytes are those of the tables, and four for each number besides: warps that are not the identity, scales, and
-  // coefficients of projections.
-  std::size_t parameters = 0;
-  for (const Table& table : tables_) {
-    parameters += table.layout.warp.kind != WarpKind::identity;
-    const int axes = projection_count(table.layout.shape);
-    parameters += axes > 1 && table.layout.warp_y.kind != WarpKind::identity;
-    parameters += axes > 2 && table.layout.warp_z.kind != WarpKind::identity;
-  }
+  ByteCount count;
+  for (const Table& table : tables_) count.add_table(table.layout, texel_bytes(table.format, table.channels));
   for (const Lobe& lobe : lobes_) {
-    parameters += lobe.scale.size();
-    for (const FactorUse& use : lobe.factors) {
-      parameters += coefficient_count(use.projection);
-      const int axes = projection_count(layout_of(use).shape);
-      if (axes > 1) parameters += coefficient_count(use.projection_y);
-      if (axes > 2) parameters += coefficient_count(use.projection_z);
-    }
+    count.add_lobe(lobe.scale.size());
+    for (const FactorUse& use : lobe.factors) count.add_use(use, layout_of(use).shape);
   }
-  return table_bytes() + parameters * sizeof(float);
+  return count.bytes();
 }
 
 std::vector<double> store_log_table(Table& table) {

@@ -10,9 +10,9 @@
 #include <burnish/fitting/choosing/backscatter.h>
 #include <burnish/fitting/choosing/fetch_plan.h>
 #include <burnish/fitting/choosing/hemisphere_plan.h>
+#include <burnish/fitting/choosing/lay_out.h>
 #include <burnish/fitting/choosing/lobe_plan.h>
 #include <burnish/fitting/choosing/order_tables.h>
-#include <burnish/fitting/choosing/spec_layout.h>
 #include <burnish/fitting/choosing/trial_sets.h>
 #include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/math/angles.h>
@@ -164,20 +164,21 @@ ModelSpec volume_spec(VolumeForm form, Beside beside, const CostLimit& limit, st
                       const SourceTraits& traits) {
   SpecBuilder builder = TablesBeside(limit, traits).build(beside);
 
-  // the volume, whose numbers are a warp's
-  const std::size_t taken =
-      bytes_of(builder.spec(), limit.texel_bytes, builder.spec().lobes.empty() ? 0 : channels) +
-      kNumberBytes * (1 + traits.retro + (builder.spec().lobes.empty() ? channels : 0));
-  const std::size_t rest = limit.bytes > taken ? (limit.bytes - taken) / limit.texel_bytes : 0;
-  if (traits.twisted) form.azimuth *= kBothSides;
-  TableLayout volume = volume_of(form, static_cast<double>(rest));
-  volume.warp_y = traits.difference_warp();
-  if (volume.width < 2) throw Error("fit: expected a budget that holds a table of three axes");
-  builder.add("g", volume,
+  // The volume has no nodes yet: the count so far is what the other tables and all numbers take.
+  builder.add("g", {.shape = TableShape::volume, .warp = kHalfRootWarp, .warp_y = traits.difference_warp()},
               {{.projection = kProjectHalf,
                 .projection_y = kProjectDifference,
                 .projection_z = traits.twisted ? kProjectSide : kProjectAzimuth}});
   ModelSpec spec = builder.spec();
+  const std::size_t taken = model_bytes(spec, channels, limit.texel_bytes);
+  const std::size_t rest = limit.bytes > taken ? (limit.bytes - taken) / limit.texel_bytes : 0;
+
+  // It takes the rest.
+  if (traits.twisted) form.azimuth *= kBothSides;
+  TableLayout& volume = spec.tables.back().layout;
+  volume = volume_of(form, static_cast<double>(rest));
+  volume.warp_y = traits.difference_warp();
+  if (volume.width < 2) throw Error("fit: expected a budget that holds a table of three axes");
   spec.tables.back().circle_z = traits.twisted;
   return spec;
 }

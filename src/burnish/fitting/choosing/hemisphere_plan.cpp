@@ -8,7 +8,7 @@
 #include <burnish/error.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/choosing/hemisphere_plan.h>
-#include <burnish/fitting/choosing/spec_layout.h>
+#include <burnish/fitting/choosing/lay_out.h>
 #include <burnish/fitting/choosing/trial_sets.h>
 #include <burnish/fitting/numerics/node_numbers.h>
 
@@ -16,13 +16,8 @@ namespace burnish {
 
 namespace {
 
-/// A model whose tables have no sizes yet, and its tables' shares of the texels; q and u take what is left.
-struct Form {
-  const char* model;
-  double border = 0;      ///< of p(wo) p(wi) or s(wo) s(wi)
-  double difference = 0;  ///< of all tables of the difference together
-};
-constexpr Form kForms[] = {
+/// The forms that are tried.
+constexpr ProductForm kForms[] = {
     {"q(h)"},
     {"q(h) + c(theta_d)"},
     {.model = "q(h) v(theta_h,theta_d,phi_d)", .difference = 0.3},
@@ -44,11 +39,6 @@ constexpr Form kForms[] = {
      .difference = 0.2},
 };
 
-// Nodes of volumes by whether they tell mirror images apart, of grids along theta_d and phi_s relative to each other.
-constexpr VolumeForm kFolded{14, 12, 6}, kSigned{8, 10, 10};
-constexpr double kSidesOfDifference = 1.5;
-constexpr int kWideNodes = 12, kMinDiskSide = 5;
-
 // Trials: at about so many nodes, whose steps are solved directly, of so many pairs each, in so few steps.
 constexpr double kTrialUnknowns = 900, kPairsOfNode = 6;
 constexpr std::size_t kFewerFetches = 2;  // of what is tried, at most below the limit
@@ -60,64 +50,6 @@ constexpr double kWorthOfFetch = 0.03;
 constexpr double kTrialTime = 0.15, kFinalTime = 0.4;  // when they end, of the whole
 // Then at all nodes: on part of the pairs, and of the best one on all of them.
 constexpr int kFinalSteps = 8, kLastSteps = 6;
-
-TableLayout disk_of(double nodes, Warp warp = {}) {
-  const int side = std::max(kMinDiskSide, static_cast<int>(std::sqrt(nodes)));
-  return {.shape = TableShape::disk, .width = side, .height = side, .warp = warp};
-}
-
-TableLayout grid_of_difference(double nodes) {
-  const double side = std::sqrt(nodes / kSidesOfDifference);
-  return {.shape = TableShape::grid,
-          .width = std::max(3, static_cast<int>(side)),
-          .height = std::max(3, static_cast<int>(kSidesOfDifference * side))};
-}
-
-/// A use of the table, all of which are of one kind.
-const FactorUse& use_of(const ModelSpec& spec, std::size_t table) {
-  for (const std::vector<FactorUse>& lobe : spec.lobes)
-    for (const FactorUse& use : lobe)
-      if (use.table == table) return use;
-  throw Error("fit: expected a use of every table");
-}
-
-/// The form's tables laid out within the bytes; none where they are too few.
-std::optional<ModelSpec> laid_out(const Form& form, const CostLimit& limit, std::size_t channels) {
-  const double texels = static_cast<double>(limit.bytes / limit.texel_bytes);
-  ModelSpec spec = parse_model_spec(form.model, {}, false);
-  std::vector<TableLayout*> of_half_vectors;
-  const auto of_difference = static_cast<double>(std::ranges::count_if(spec.tables, [](const auto& table) {
-    return table.layout.shape == TableShape::grid || table.layout.shape == TableShape::volume;
-  }));
-  for (std::size_t t = 0; t < spec.tables.size(); ++t) {
-    TableLayout& layout = spec.tables[t].layout;
-    const FactorUse& use = use_of(spec, t);
-    const double nodes = form.difference / of_difference * texels;
-    if (layout.shape == TableShape::line) {
-      layout.width = kWideNodes;
-    } else if (layout.shape == TableShape::grid) {
-      layout = grid_of_difference(nodes);
-    } else if (layout.shape == TableShape::volume) {
-      spec.tables[t].circle_z = use.projection_z == kProjectSide;
-      layout = volume_of(spec.tables[t].circle_z ? kSigned : kFolded, nodes);
-      if (layout.width < 2) return {};
-    } else if (use.projection == kProjectHalf) {
-      layout = {.shape = TableShape::disk, .width = 0, .height = 0, .warp = kHalfDiskWarp};
-      of_half_vectors.push_back(&layout);
-    } else {
-      layout = disk_of(form.border * texels);
-    }
-  }
-
-  // q takes what is left
-  const std::size_t taken = bytes_of(spec, limit.texel_bytes, channels);
-  const double rest =
-      taken < limit.bytes ? static_cast<double>((limit.bytes - taken) / limit.texel_bytes) : 0;
-  for (TableLayout* layout : of_half_vectors)
-    *layout = disk_of(rest / static_cast<double>(of_half_vectors.size()), kHalfDiskWarp);
-  if (bytes_of(spec, limit.texel_bytes, channels) > limit.bytes) return {};
-  return spec;
-}
 
 using Candidate = HemisphereCandidate;
 
@@ -200,8 +132,8 @@ LogModel in_colour(const LogModel& grey, const TrainingSet& set) {
 /// All forms within the limit; none where its bytes do not hold any.
 std::vector<ModelSpec> specs_within(const CostLimit& limit, std::size_t channels) {
   std::vector<ModelSpec> specs;
-  for (const Form& form : kForms)
-    if (std::optional<ModelSpec> spec = laid_out(form, limit, channels);
+  for (const ProductForm& form : kForms)
+    if (std::optional<ModelSpec> spec = lay_out(form, limit, channels);
         spec && fetch_count(*spec) <= static_cast<std::size_t>(limit.fetches))
       specs.push_back(std::move(*spec));
   return specs;

@@ -9,7 +9,7 @@
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/choosing/fetch_plan.h>
 #include <burnish/fitting/choosing/hemisphere_plan.h>
-#include <burnish/fitting/choosing/spec_layout.h>
+#include <burnish/fitting/choosing/lay_out.h>
 #include <burnish/fitting/choosing/trial_sets.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
@@ -34,8 +34,8 @@ TEST(HemispherePlan, KeepsBothLimitsAndUsesTheBytes) {
         const std::vector<ModelSpec> specs = hemisphere_specs(limit, channels);
         for (const ModelSpec& spec : specs) {
           EXPECT_LE(fetch_count(spec), static_cast<std::size_t>(fetches));
-          EXPECT_LE(bytes_of(spec, limit.texel_bytes, channels), bytes);
-          EXPECT_GT(bytes_of(spec, limit.texel_bytes, channels), bytes * 9 / 10);
+          EXPECT_LE(model_bytes(spec, channels, limit.texel_bytes), bytes);
+          EXPECT_GT(model_bytes(spec, channels, limit.texel_bytes), bytes * 9 / 10);
         }
       }
     }
@@ -56,7 +56,7 @@ TEST(HemispherePlan, GivesReciprocalModels) {
 
 TEST(HemispherePlan, CountsWhatAModelTakes) {
   for (const ModelSpec& spec : hemisphere_specs({.bytes = 9'000, .texel_bytes = 2, .fetches = 6}, 1))
-    EXPECT_EQ(flat(spec).bytes(), bytes_of(spec, 2, 1));
+    EXPECT_EQ(flat(spec).bytes(), model_bytes(spec, 1, 2));
 }
 
 /// So many pixels and twice as many pairs of a brushed metal, grey.
@@ -97,7 +97,7 @@ TEST(HemispherePlan, TriesFewFetchesBesideLobes) {
     EXPECT_TRUE(k == 0 || trial.fetches > tried.trials[k - 1].fetches);
     const HemisphereCandidate& candidate = tried.candidates[k];
     EXPECT_EQ(static_cast<std::size_t>(trial.fetches), fetch_count(trial.lobes ? of_lobes : candidate.spec));
-    EXPECT_TRUE(trial.lobes || bytes_of(candidate.spec, limit.texel_bytes, 1) <= limit.bytes);
+    EXPECT_TRUE(trial.lobes || model_bytes(candidate.spec, 1, limit.texel_bytes) <= limit.bytes);
   }
   EXPECT_EQ(std::ranges::count(tried.trials, true, &FetchTrial::lobes), 1);
   EXPECT_TRUE(try_hemispheres(set, {.bytes = 40, .texel_bytes = 2}, options, lobes, options).trials.empty());

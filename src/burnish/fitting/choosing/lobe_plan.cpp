@@ -6,9 +6,10 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/factors/byte_count.h>
+#include <burnish/fitting/choosing/lay_out.h>
 #include <burnish/fitting/choosing/lobe_plan.h>
 #include <burnish/fitting/choosing/order_tables.h>
-#include <burnish/fitting/choosing/spec_layout.h>
 #include <burnish/reflectance/mirror_asymmetry.h>
 
 namespace burnish {
@@ -41,31 +42,50 @@ int lobes_for(double texels) {
   return std::clamp(static_cast<int>(std::lround(std::log2(texels / 82))), 1, 8);
 }
 
-// Numbers of one table's warps and of its uses' projections.
-std::size_t numbers(const PlannedFactor& factor, std::size_t lobes) {
-  std::size_t sum = std::size_t{factor.warp.kind != WarpKind::identity} +
-                    std::size_t{factor.second_warp.kind != WarpKind::identity};
-  if (!factor.every_lobe) sum *= lobes;
-  for (const Projection& use : factor.uses) sum += lobes * coefficient_count(use);
-  return factor.shape == TableShape::grid ? sum + lobes * coefficient_count(factor.second) : sum;
-}
-
-std::size_t number_bytes(const std::vector<PlannedFactor>& factors, std::size_t lobes, std::size_t channels) {
-  std::size_t sum = lobes * channels;
-  for (const PlannedFactor& factor : factors) sum += numbers(factor, lobes);
-  return sum * kNumberBytes;
-}
-
-// A node of a table with one channel for all takes this share of a texel: shared exponents serve no single
-// channel, whose table is half floats.
+// A node of a table with one channel for all takes this share of a texel.
 double node_cost(const PlannedFactor& factor, std::size_t channels, std::size_t texel_bytes) {
   if (!factor.grey) return 1;
-  const std::size_t one = texel_bytes == 4 && channels == 3 ? 2 : texel_bytes / channels;
-  return static_cast<double>(one) / static_cast<double>(texel_bytes);
+  return static_cast<double>(shared_texel_bytes(channels, texel_bytes)) / static_cast<double>(texel_bytes);
 }
 
-// Adds a factor's table of at most `nodes` nodes.
-void add_table(const PlannedFactor& factor, double nodes, const std::string& suffix, ModelSpec& spec) {
+/// A plan's lobes, whose tables have no nodes yet.
+struct Unsized {
+  ModelSpec spec;
+  std::vector<const PlannedFactor*> factors;  ///< of each table
+};
+
+std::size_t add_table(const PlannedFactor& factor, const std::string& suffix, Unsized& model) {
+  model.spec.tables.push_back({.name = factor.name + suffix,
+                               .layout = {.shape = factor.shape,
+                                          .width = 0,
+                                          .height = 0,
+                                          .warp = factor.warp,
+                                          .warp_y = factor.second_warp},
+                               .shared = factor.grey});
+  model.factors.push_back(&factor);
+  return model.factors.size() - 1;
+}
+
+// Appends lobes: first the tables that they have in common, then each lobe's own.
+void add_lobes(const std::vector<PlannedFactor>& factors, std::size_t lobes, bool numbered, Unsized& model) {
+  std::vector<std::size_t> common(factors.size());
+  for (std::size_t k = 0; k < factors.size(); ++k)
+    if (factors[k].every_lobe) common[k] = add_table(factors[k], "", model);
+  for (std::size_t j = 0; j < lobes; ++j) {
+    std::vector<FactorUse> lobe;
+    for (std::size_t k = 0; k < factors.size(); ++k) {
+      const std::size_t table = factors[k].every_lobe
+                                    ? common[k]
+                                    : add_table(factors[k], numbered ? std::to_string(j + 1) : "", model);
+      for (const Projection& use : factors[k].uses)
+        lobe.push_back({.table = table, .projection = use, .projection_y = factors[k].second});
+    }
+    model.spec.lobes.push_back(std::move(lobe));
+  }
+}
+
+// Gives a factor's table at most `nodes` nodes.
+void set_size(const PlannedFactor& factor, double nodes, ModelSpec::TableSpec& table) {
   const bool line = factor.shape == TableShape::line;
   const int least = factor.shape == TableShape::disk ? 3 : 2;
   const auto side = [](double n) { return std::min(static_cast<int>(n), kMaxLineNodes); };
@@ -74,43 +94,24 @@ void add_table(const PlannedFactor& factor, double nodes, const std::string& suf
                      : factor.width > 0 ? side(nodes / factor.width)
                                         : width;
   if (width < least || (!line && height < least))
-    throw Error(fmt::format("fit: expected a budget that holds every table, found {} texels for '{}{}'",
-                            static_cast<int>(nodes), factor.name, suffix));
-  spec.tables.push_back({.name = factor.name + suffix,
-                         .layout = {.shape = factor.shape,
-                                    .width = width,
-                                    .height = height,
-                                    .warp = factor.warp,
-                                    .warp_y = factor.second_warp},
-                         .shared = factor.grey});
+    throw Error(fmt::format("fit: expected a budget that holds every table, found {} texels for '{}'",
+                            static_cast<int>(nodes), table.name));
+  table.layout.width = width;
+  table.layout.height = height;
 }
 
-// Appends lobes of at most `texels` texels together.
-void add_lobes(const std::vector<PlannedFactor>& factors, std::size_t lobes, double texels,
-               std::size_t channels, std::size_t texel_bytes, bool numbered, ModelSpec& spec) {
+// Shares out at most `texels` texels among the tables from `first` on, up to `end`, which are those of `factors`.
+void share_texels(const std::vector<PlannedFactor>& factors, std::size_t lobes, double texels,
+                  std::size_t channels, std::size_t texel_bytes, std::size_t first, std::size_t end,
+                  Unsized& model) {
   double shares = 0;
   for (const PlannedFactor& factor : factors)
     shares += factor.share * static_cast<double>(factor.every_lobe ? 1 : lobes);
-  // shares are of bytes
-  const auto nodes = [&](const PlannedFactor& factor) {
-    return factor.share / shares * texels / node_cost(factor, channels, texel_bytes);
-  };
-  std::vector<std::size_t> common(factors.size());
-  for (std::size_t k = 0; k < factors.size(); ++k)
-    if (factors[k].every_lobe) {
-      common[k] = spec.tables.size();
-      add_table(factors[k], nodes(factors[k]), "", spec);
-    }
-  for (std::size_t j = 0; j < lobes; ++j) {
-    std::vector<FactorUse> lobe;
-    for (std::size_t k = 0; k < factors.size(); ++k) {
-      if (!factors[k].every_lobe)
-        add_table(factors[k], nodes(factors[k]), numbered ? std::to_string(j + 1) : "", spec);
-      const std::size_t table = factors[k].every_lobe ? common[k] : spec.tables.size() - 1;
-      for (const Projection& use : factors[k].uses)
-        lobe.push_back({.table = table, .projection = use, .projection_y = factors[k].second});
-    }
-    spec.lobes.push_back(std::move(lobe));
+  for (std::size_t t = first; t < end; ++t) {
+    const PlannedFactor& factor = *model.factors[t];
+    // Shares are of bytes.
+    const double nodes = factor.share / shares * texels / node_cost(factor, channels, texel_bytes);
+    set_size(factor, nodes, model.spec.tables[t]);
   }
 }
 
@@ -212,16 +213,19 @@ ModelSpec plan_to_spec(const LobePlan& plan, std::size_t bytes, std::size_t chan
   const auto lobes = static_cast<std::size_t>(plan.lobes);
   if (lobes > 1 && std::ranges::all_of(plan.factors, &PlannedFactor::every_lobe))
     throw Error("fit: expected a factor that each lobe has its own table of");
-  const std::size_t number_total = number_bytes(plan.factors, lobes, channels) +
-                                   (plan.wide.empty() ? 0 : number_bytes(plan.wide, 1, channels));
-  const std::size_t texels = bytes > number_total ? (bytes - number_total) / texel_bytes : 0;
+  Unsized model;
+  if (!plan.wide.empty()) add_lobes(plan.wide, 1, false, model);
+  const std::size_t wide_tables = model.factors.size();
+  add_lobes(plan.factors, lobes, true, model);
+
+  // Without nodes the model takes the bytes of its numbers alone. The texels share the others.
+  const std::size_t numbers = model_bytes(model.spec, channels, texel_bytes);
+  const std::size_t texels = bytes > numbers ? (bytes - numbers) / texel_bytes : 0;
   const auto wide = static_cast<std::size_t>(plan.wide_texels);
-  ModelSpec spec;
-  if (!plan.wide.empty())
-    add_lobes(plan.wide, 1, static_cast<double>(wide), channels, texel_bytes, false, spec);
-  add_lobes(plan.factors, lobes, static_cast<double>(texels > wide ? texels - wide : 0), channels,
-            texel_bytes, true, spec);
-  return spec;
+  share_texels(plan.wide, 1, static_cast<double>(wide), channels, texel_bytes, 0, wide_tables, model);
+  share_texels(plan.factors, lobes, static_cast<double>(texels > wide ? texels - wide : 0), channels,
+               texel_bytes, wide_tables, model.factors.size(), model);
+  return std::move(model.spec);
 }
 
 }  // namespace burnish

@@ -9,9 +9,6 @@
 
 namespace burnish {
 
-/// Of a scale, a warp's parameter or a projection's coefficient, where plans count bytes; see FactoredBrdf::bytes.
-constexpr std::size_t kNumberBytes = 4;
-
 /// A factor of a lobe before its size is known: a table, looked up by one projection or, for a factor that
 /// both directions share, by two that exchanging them exchanges.
 struct PlannedFactor {

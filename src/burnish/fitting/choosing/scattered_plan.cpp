@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/factors/byte_count.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/choosing/lobe_plan.h>
 #include <burnish/fitting/choosing/scattered_plan.h>
@@ -378,24 +379,6 @@ ScatteredPlan plan_many(const SampleSource& source, std::size_t bytes, std::opti
 }
 
 }  // namespace
-
-std::size_t model_bytes(const ModelSpec& spec, std::size_t channels, TableFormat format) {
-  std::size_t tables = 0, numbers = 0;
-  for (const ModelSpec::TableSpec& table : spec.tables) {
-    tables += table.layout.node_count() * texel_bytes(format_of(table, format), table.shared ? 1 : channels);
-    numbers += table.layout.warp.kind != WarpKind::identity;
-    numbers += table.layout.shape == TableShape::grid && table.layout.warp_y.kind != WarpKind::identity;
-  }
-  for (const std::vector<FactorUse>& lobe : spec.lobes) {
-    numbers += channels;
-    for (const FactorUse& use : lobe) {
-      numbers += coefficient_count(use.projection);
-      if (spec.tables[use.table].layout.shape == TableShape::grid)
-        numbers += coefficient_count(use.projection_y);
-    }
-  }
-  return tables + numbers * kNumberBytes;
-}
 
 std::size_t least_scattered_bytes(std::size_t channels, bool isotropic, TableFormat format) {
   const std::string& least = kFactorSets.back();

@@ -10,9 +10,6 @@
 
 namespace burnish {
 
-/// FactoredBrdf::bytes of a model of this spec, its tables in `format` where they have none of their own.
-std::size_t model_bytes(const ModelSpec& spec, std::size_t channels, TableFormat format);
-
 /// The least bytes that plan_scattered has a model for: one table of the half vector, as coarse as can be.
 std::size_t least_scattered_bytes(std::size_t channels, bool isotropic, TableFormat format);
 

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
+#include <burnish/factors/byte_count.h>
 #include <burnish/factors/model_spec.h>
+#include <burnish/fitting/choosing/cost_limit.h>
 
 namespace burnish {
 
@@ -23,7 +26,15 @@ TableLayout volume_of(const VolumeForm& form, double nodes);
 /// The spec with about this share of the nodes of each volume and disk, in (0, 1].
 ModelSpec at_fewer_nodes(ModelSpec spec, double share);
 
-/// FactoredBrdf::bytes of a model of the spec.
-std::size_t bytes_of(const ModelSpec& spec, std::size_t texel_bytes, std::size_t channels);
+/// A model of hemispheres in the notation of parse_model_spec, and its tables' shares of the texels, in [0, 1) together.
+struct ProductForm {
+  const char* model;
+  double border = 0;      ///< of p(wo) p(wi) or s(wo) s(wi)
+  double difference = 0;  ///< of all tables of the difference together
+};
+
+/// The form's tables laid out within the limit's bytes, see model_bytes. Hemispheres of half vectors take what the
+/// other tables leave. None where the bytes are too few. The limit's fetches do not count.
+std::optional<ModelSpec> lay_out(const ProductForm& form, const CostLimit& limit, std::size_t channels);
 
 }  // namespace burnish
