@@ -10,7 +10,7 @@
 #include <burnish/baselines/evaluation_cost.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/file.h>
-#include <burnish/fitting/choosing/fetch_plan.h>
+#include <burnish/fitting/choosing/tournament.h>
 #include <burnish/fitting/fit_file.h>
 #include <burnish/fitting/parametric/material_fit.h>
 #include <burnish/math/angles.h>

@@ -10,15 +10,19 @@
 #include <burnish/error.h>
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/fitting/baselines/negative_lobes.h>
+#include <burnish/fitting/choosing/backscatter.h>
 #include <burnish/fitting/choosing/between_incidences.h>
 #include <burnish/fitting/choosing/budget_ladder.h>
 #include <burnish/fitting/choosing/fetch_plan.h>
 #include <burnish/fitting/choosing/fit_plan.h>
+#include <burnish/fitting/choosing/frontal_pixels.h>
 #include <burnish/fitting/choosing/hemisphere_plan.h>
 #include <burnish/fitting/choosing/order_tables.h>
 #include <burnish/fitting/choosing/overfit.h>
 #include <burnish/fitting/choosing/scattered_plan.h>
 #include <burnish/fitting/choosing/search.h>
+#include <burnish/fitting/choosing/tournament.h>
+#include <burnish/fitting/choosing/volume_forms.h>
 #include <burnish/fitting/choosing/volume_smoothness.h>
 #include <burnish/fitting/energy.h>
 #include <burnish/fitting/fit.h>
@@ -331,7 +335,7 @@ class Fitter {
     TrainingSet set = drawn_set(training_for_hemispheres());
     RefineOptions trials = hemisphere_options(form.loss);
     trials.progress = progress("choosing fetches");
-    HemisphereTrials tried = try_hemispheres(set, limit, trials, lobes.plan, lobes.refine);
+    FetchTrials tried = try_hemispheres(set, limit, trials, lobes.plan, lobes.refine);
     FactoredBrdf brdf = [&] {
       const FetchTrial* const chosen = tried.trials.empty() ? nullptr : &trial_at_knee(tried.trials);
       if (chosen && !chosen->lobes)

@@ -12,7 +12,7 @@
 #include <burnish/factors/compact_file.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/baselines/baselines.h>
-#include <burnish/fitting/choosing/fetch_plan.h>
+#include <burnish/fitting/choosing/tournament.h>
 #include <burnish/fitting/fit_file.h>
 #include <burnish/io/open_source.h>
 #include <burnish/math/parallel.h>

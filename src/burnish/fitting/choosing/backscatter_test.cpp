@@ -5,6 +5,8 @@
 
 #include <burnish/fitting/choosing/backscatter.h>
 #include <burnish/fitting/choosing/fetch_plan.h>
+#include <burnish/fitting/choosing/frontal_pixels.h>
+#include <burnish/fitting/choosing/volume_forms.h>
 #include <burnish/fitting/refinement/refine.h>
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/analytic.h>

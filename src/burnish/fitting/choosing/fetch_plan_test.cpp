@@ -6,6 +6,9 @@
 #include <burnish/error.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/choosing/fetch_plan.h>
+#include <burnish/fitting/choosing/frontal_pixels.h>
+#include <burnish/fitting/choosing/tournament.h>
+#include <burnish/fitting/choosing/volume_forms.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/mirror_asymmetry.h>

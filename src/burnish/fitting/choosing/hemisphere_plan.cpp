@@ -9,7 +9,7 @@
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/choosing/hemisphere_plan.h>
 #include <burnish/fitting/choosing/lay_out.h>
-#include <burnish/fitting/choosing/trial_sets.h>
+#include <burnish/fitting/choosing/tournament.h>
 #include <burnish/fitting/numerics/node_numbers.h>
 
 namespace burnish {
@@ -39,24 +39,17 @@ constexpr ProductForm kForms[] = {
      .difference = 0.2},
 };
 
-// Trials: at about so many nodes, whose steps are solved directly, of so many pairs each, in so few steps.
+// The first heat: at about so many nodes, of so many pairs each, in so few steps, on a part of the pairs.
 constexpr double kTrialUnknowns = 900, kPairsOfNode = 6;
 constexpr std::size_t kFewerFetches = 2;  // of what is tried, at most below the limit
-constexpr int kTrialSteps = 20;
-constexpr std::size_t kFinalists = 3, kFinalPart = 4;
+constexpr int kFirstSteps = 20;
+constexpr std::size_t kFirstPart = 8, kFinalists = 3, kFinalPart = 4;
 // Above 50 dB what is left of pictures is not seen; relative errors are. A fetch has to lower the errors by 3 %.
 constexpr ErrorTerms kFinalShares{.pictures = 1, .relative = 2, .log_cos = 2};
 constexpr double kWorthOfFetch = 0.03;
-constexpr double kTrialTime = 0.15, kFinalTime = 0.4;  // when they end, of the whole
+constexpr double kFirstTime = 0.15, kFinalTime = 0.4;  // when they end, of the whole
 // Then at all nodes: on part of the pairs, and of the best one on all of them.
 constexpr int kFinalSteps = 8, kLastSteps = 6;
-
-using Candidate = HemisphereCandidate;
-
-/// What the model's fetches have to lower the objective by.
-double cost(const ModelSpec& spec, const ErrorTerms& shares) {
-  return kWorthOfFetch * shares.sum() * static_cast<double>(fetch_count(spec));
-}
 
 /// The fit at all nodes of the spec, after some more steps.
 FitSummary refine_at_all(LogModel& fit, const ModelSpec& spec, const TrainingSet& set, RefineOptions options,
@@ -66,44 +59,39 @@ FitSummary refine_at_all(LogModel& fit, const ModelSpec& spec, const TrainingSet
   return refine(fit, set, options);
 }
 
-/// The models in few steps at few nodes, which come near the least error soonest; the best ones come first.
-std::vector<Candidate> tried(const std::vector<ModelSpec>& specs, const TrainingSet& mean,
-                             const RefineOptions& options) {
-  const TrialSets sets(mean);
-  const RefineOptions few = in_few_steps(options, kTrialSteps);
-  const double most = std::min(kTrialUnknowns, static_cast<double>(sets.fitted.size()) / kPairsOfNode);
-  std::vector<Candidate> candidates(specs.size());
-  for_each_trial(specs.size(), options, 0, kTrialTime, [&](std::size_t k) {
-    const double nodes = static_cast<double>(coupled_unknowns(specs[k], 1));
-    const ModelSpec trial = at_fewer_nodes(specs[k], std::min(1.0, most / nodes));
-    candidates[k] = {.spec = specs[k], .fit = fit_lobes(sets.fitted, trial, few).model, .error = 0};
-    candidates[k].error = objective(candidates[k].fit, sets.judged, few.shares) + cost(specs[k], few.shares);
-  });
-  std::ranges::stable_sort(candidates, {}, &Candidate::error);
-  return candidates;
+/// The first heat: in few steps at few nodes, which come near the least error soonest. Returns the finalists.
+std::vector<Candidate> first_heat(std::vector<ModelSpec> specs, const TrainingSet& mean,
+                                  const RefineOptions& options) {
+  const Heat heat{.parts = TrialParts(mean, kFirstPart),
+                  .options = in_few_steps(options, kFirstSteps),
+                  .shares = options.shares,
+                  .worth_of_fetch = kWorthOfFetch};
+  const double most = std::min(kTrialUnknowns, static_cast<double>(heat.parts.fitted.size()) / kPairsOfNode);
+  std::vector<Candidate> candidates;
+  for (ModelSpec& spec : specs) candidates.push_back({.spec = std::move(spec)});
+  const auto fit = [&](Candidate& candidate) {
+    // Steps at so many unknowns are solved directly, and the pairs determine them.
+    const double nodes = static_cast<double>(coupled_unknowns(candidate.spec, 1));
+    const ModelSpec trial = at_fewer_nodes(candidate.spec, std::min(1.0, most / nodes));
+    candidate.fit = fit_lobes(heat.parts.fitted, trial, heat.options).model;
+  };
+  heat.play(candidates, fit, part_of_progress(options.progress, 0, kFirstTime));
+  return finalists(std::move(candidates), kFinalists);
 }
 
-/// Finalists come near their least error at all nodes, of a quarter of the pairs: few steps leave some behind that
-/// end ahead.
-struct Finals {
-  TrainingSet fitted, judged;
-  RefineOptions options;
-  ErrorTerms shares;
+/// The final: finalists come near their least error at all nodes, of a quarter of the pairs. Few steps leave some
+/// behind that end ahead.
+Heat final_heat(const TrainingSet& mean, const RefineOptions& options, double worth_of_fetch) {
+  return {.parts = TrialParts(mean, kFinalPart),
+          .options = in_few_steps(options, std::min(kFinalSteps, options.max_iterations)),
+          .shares = options.shares.pictures > 0 ? kFinalShares : options.shares,
+          .worth_of_fetch = worth_of_fetch};
+}
 
-  Finals(const TrainingSet& mean, const RefineOptions& how)
-      : fitted(part_of(mean, 0, kFinalPart)),
-        judged(part_of(mean, kFinalPart / 2, kFinalPart)),
-        options(how),
-        shares(how.shares.pictures > 0 ? kFinalShares : how.shares) {
-    options.format = TableFormat::single;
-    options.progress = nullptr;
-  }
-  double error_of(const LogModel& fit) const { return objective(fit, judged, shares); }
-  void play(Candidate& candidate) const {
-    refine_at_all(candidate.fit, candidate.spec, fitted, options, kFinalSteps);
-    candidate.error = error_of(candidate.fit);
-  }
-};
+/// A finalist goes on from where it stands.
+void refine_finalist(const Heat& finals, Candidate& candidate) {
+  refine_at_all(candidate.fit, candidate.spec, finals.parts.fitted, finals.options, kFinalSteps);
+}
 
 /// The mean's model for every channel of the set, each of which reflects as much of what is drawn as it does.
 LogModel in_colour(const LogModel& grey, const TrainingSet& set) {
@@ -153,67 +141,45 @@ std::vector<ModelSpec> hemisphere_specs(const CostLimit& limit, std::size_t chan
 LobesFit fit_hemispheres(const TrainingSet& set, const std::vector<ModelSpec>& specs,
                          const RefineOptions& options) {
   const TrainingSet mean = mean_of_channels(set);
-  std::vector<Candidate> candidates = tried(specs, mean, options);
-  candidates.resize(std::min(kFinalists, candidates.size()));
-
-  // each fetch has to be worth it
-  const Finals finals(mean, options);
-  for_each_trial(candidates.size(), options, kTrialTime, kFinalTime, [&](std::size_t k) {
-    finals.play(candidates[k]);
-    candidates[k].error += cost(candidates[k].spec, finals.shares);
-  });
+  std::vector<Candidate> candidates = first_heat(specs, mean, options);
+  const Heat finals = final_heat(mean, options, kWorthOfFetch);
+  finals.play(
+      candidates, [&](Candidate& candidate) { refine_finalist(finals, candidate); },
+      part_of_progress(options.progress, kFirstTime, kFinalTime));
   RefineOptions rest = options;
   rest.progress = part_of_progress(options.progress, kFinalTime, 1);
-  return fit_hemispheres(set, *std::ranges::min_element(candidates, {}, &Candidate::error), rest);
+  return fit_hemispheres(set, winner(candidates), rest);
 }
 
-LobesFit fit_hemispheres(const TrainingSet& set, const HemisphereCandidate& start,
-                         const RefineOptions& options) {
+LobesFit fit_hemispheres(const TrainingSet& set, const Candidate& start, const RefineOptions& options) {
   LobesFit fit{.model = in_colour(start.fit, set), .summary = {}};
   fit.summary = refine_at_all(fit.model, start.spec, set, options, kLastSteps);
   return fit;
 }
 
-HemisphereTrials try_hemispheres(const TrainingSet& set, CostLimit limit, const RefineOptions& options,
-                                 const LobePlan& lobes, const RefineOptions& of_lobes) {
+FetchTrials try_hemispheres(const TrainingSet& set, CostLimit limit, const RefineOptions& options,
+                            const LobePlan& lobes, const RefineOptions& of_lobes) {
   limit.fetches = std::numeric_limits<int>::max();
-  const std::vector<ModelSpec> specs = specs_within(limit, set.channels);
+  std::vector<ModelSpec> specs = specs_within(limit, set.channels);
   if (specs.empty()) return {};
 
-  // the finalists and, last, the lobes
+  // The finalists and, last, the lobes. Fetches cost nothing here: the knee decides.
   const TrainingSet mean = mean_of_channels(set);
-  std::vector<Candidate> candidates = tried(specs, mean, options);
-  candidates.resize(std::min(kFinalists, candidates.size()));
+  std::vector<Candidate> candidates = first_heat(std::move(specs), mean, options);
   candidates.push_back(
-      {.spec = plan_to_spec(lobes, limit.bytes, set.channels, limit.texel_bytes), .fit = {}, .error = 0});
-  const Finals finals(mean, options);
+      {.spec = plan_to_spec(lobes, limit.bytes, set.channels, limit.texel_bytes), .plan = lobes});
+  const Heat finals = final_heat(mean, options, 0);
   RefineOptions quiet = of_lobes;
   quiet.progress = nullptr;
-  std::vector<FetchTrial> trials(candidates.size());
-  for_each_trial(candidates.size(), options, kTrialTime, 1, [&](std::size_t k) {
-    Candidate& candidate = candidates[k];
-    const bool is_lobes = k + 1 == candidates.size();
-    if (is_lobes)
-      candidate.error =
-          finals.error_of(fit_plan(finals.fitted, lobes, limit.bytes, limit.texel_bytes, quiet).model);
+  const auto fit = [&](Candidate& candidate) {
+    if (candidate.plan)
+      candidate.fit =
+          fit_plan(finals.parts.fitted, *candidate.plan, limit.bytes, limit.texel_bytes, quiet).model;
     else
-      finals.play(candidate);
-    trials[k] = {.fetches = static_cast<int>(fetch_count(candidate.spec)),
-                 .lobes = is_lobes,
-                 .error = std::exp(candidate.error / finals.shares.sum())};
-  });
-
-  // the best of each number of fetches
-  std::vector<std::size_t> order(trials.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, {}, [&](std::size_t k) { return std::pair(trials[k].fetches, trials[k].error); });
-  HemisphereTrials best;
-  for (const std::size_t k : order) {
-    if (!best.trials.empty() && best.trials.back().fetches == trials[k].fetches) continue;
-    best.trials.push_back(trials[k]);
-    best.candidates.push_back(std::move(candidates[k]));
-  }
-  return best;
+      refine_finalist(finals, candidate);
+  };
+  finals.play(candidates, fit, part_of_progress(options.progress, kFirstTime, 1));
+  return best_of_each_fetch_count(std::move(candidates), finals.shares);
 }
 
 TrainingOptions training_for_hemispheres() {

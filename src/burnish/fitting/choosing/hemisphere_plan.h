@@ -6,7 +6,7 @@
 #include <burnish/fitting/choosing/cost_limit.h>
 #include <burnish/fitting/choosing/fit_plan.h>
 #include <burnish/fitting/choosing/lobe_plan.h>
-#include <burnish/fitting/fit_report.h>
+#include <burnish/fitting/choosing/tournament.h>
 
 namespace burnish {
 
@@ -24,27 +24,16 @@ std::vector<ModelSpec> hemisphere_specs(const CostLimit& limit, std::size_t chan
 LobesFit fit_hemispheres(const TrainingSet& set, const std::vector<ModelSpec>& specs,
                          const RefineOptions& options);
 
-/// A model of the mean of the channels, on its way to all nodes of its spec.
-struct HemisphereCandidate {
-  ModelSpec spec;
-  LogModel fit;      ///< one channel, at as many nodes as it has come to
-  double error = 0;  ///< of pairs that it was not fitted to
-};
-/// The last steps of fit_hemispheres: the candidate's spec, channel by channel, from where the candidate stands.
-LobesFit fit_hemispheres(const TrainingSet& set, const HemisphereCandidate& start,
-                         const RefineOptions& options);
+/// The last steps of fit_hemispheres: the candidate's spec, channel by channel, from where the candidate stands, a model
+/// of the mean of the channels.
+LobesFit fit_hemispheres(const TrainingSet& set, const Candidate& start, const RefineOptions& options);
 
-/// What models of an anisotropic source do by how much they cost, where a number of fetches is to be chosen.
-struct HemisphereTrials {
-  std::vector<FetchTrial> trials;               ///< by rising fetches
-  std::vector<HemisphereCandidate> candidates;  ///< theirs; of lobes without a fit
-};
 /// The three finalists of fit_hemispheres among models of any number of fetches, and these lobes, refined with
 /// `of_lobes`: each fitted to a quarter of the pairs, the mean of their channels, and judged on another. Of two with as
 /// many fetches the better one stays. Empty where the limit's bytes hold no hemispheres; its fetches do not count.
 /// Deterministic.
-HemisphereTrials try_hemispheres(const TrainingSet& set, CostLimit limit, const RefineOptions& options,
-                                 const LobePlan& lobes, const RefineOptions& of_lobes);
+FetchTrials try_hemispheres(const TrainingSet& set, CostLimit limit, const RefineOptions& options,
+                            const LobePlan& lobes, const RefineOptions& of_lobes);
 
 /// How many pairs to draw for them, and where.
 TrainingOptions training_for_hemispheres();

@@ -7,10 +7,10 @@
 
 #include <burnish/error.h>
 #include <burnish/factors/fetches.h>
-#include <burnish/fitting/choosing/fetch_plan.h>
+#include <burnish/fitting/choosing/frontal_pixels.h>
 #include <burnish/fitting/choosing/hemisphere_plan.h>
 #include <burnish/fitting/choosing/lay_out.h>
-#include <burnish/fitting/choosing/trial_sets.h>
+#include <burnish/fitting/choosing/tournament.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/testing/log_models.h>
@@ -87,7 +87,7 @@ TEST(HemispherePlan, TriesFewFetchesBesideLobes) {
   const CostLimit limit{.bytes = 900, .texel_bytes = 2, .fetches = 1};
   const LobePlan lobes = default_plan(limit.bytes, 0, false, limit.texel_bytes);
   const RefineOptions options{.smooth = 1e-6, .max_iterations = 8};
-  const HemisphereTrials tried = try_hemispheres(set, limit, options, lobes, options);
+  const FetchTrials tried = try_hemispheres(set, limit, options, lobes, options);
   ASSERT_GT(tried.trials.size(), 1u);
   ASSERT_EQ(tried.candidates.size(), tried.trials.size());
   const ModelSpec of_lobes = plan_to_spec(lobes, limit.bytes, 1, limit.texel_bytes);
@@ -95,7 +95,7 @@ TEST(HemispherePlan, TriesFewFetchesBesideLobes) {
     const FetchTrial& trial = tried.trials[k];
     EXPECT_GT(trial.error, 0);
     EXPECT_TRUE(k == 0 || trial.fetches > tried.trials[k - 1].fetches);
-    const HemisphereCandidate& candidate = tried.candidates[k];
+    const Candidate& candidate = tried.candidates[k];
     EXPECT_EQ(static_cast<std::size_t>(trial.fetches), fetch_count(trial.lobes ? of_lobes : candidate.spec));
     EXPECT_TRUE(trial.lobes || model_bytes(candidate.spec, 1, limit.texel_bytes) <= limit.bytes);
   }

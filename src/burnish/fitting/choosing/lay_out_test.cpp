@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <burnish/fitting/choosing/fetch_plan.h>
 #include <burnish/fitting/choosing/hemisphere_plan.h>
 #include <burnish/fitting/choosing/lay_out.h>
 #include <burnish/fitting/choosing/lobe_plan.h>
+#include <burnish/fitting/choosing/volume_forms.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/testing/brdfs.h>
 

@@ -2,6 +2,7 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/choosing/fetch_plan.h>
+#include <burnish/fitting/choosing/volume_forms.h>
 #include <burnish/fitting/choosing/volume_smoothness.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
