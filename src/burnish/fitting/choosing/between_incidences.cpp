@@ -4,8 +4,8 @@
 #include <map>
 #include <vector>
 
+#include <burnish/fitting/choosing/backscatter.h>
 #include <burnish/fitting/choosing/between_incidences.h>
-#include <burnish/fitting/choosing/scattered_plan.h>
 #include <burnish/math/angles.h>
 
 namespace burnish {

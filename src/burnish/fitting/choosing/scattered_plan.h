@@ -5,13 +5,9 @@
 
 #include <burnish/factors/model_spec.h>
 #include <burnish/fitting/one_lobe/homomorphic.h>
-#include <burnish/math/angles.h>
 #include <burnish/reflectance/sample_source.h>
 
 namespace burnish {
-
-/// The least bytes that plan_scattered has a model for: one table of the half vector, as coarse as can be.
-std::size_t least_scattered_bytes(std::size_t channels, bool isotropic, TableFormat format);
 
 /// A lobe for scattered samples.
 struct ScatteredPlan {
@@ -21,18 +17,6 @@ struct ScatteredPlan {
   std::optional<double> error;
   TableFormat format = TableFormat::half;  ///< of all tables
 };
-
-/// What makes an incidence: polar angles of wi as close as this, radians, and so many samples near wi = wo.
-inline constexpr double kSameIncidence = kPi / 180;
-inline constexpr std::size_t kMinNearby = 3;
-
-/// Whether the samples of a source show a lobe about wi = wo: at most incidences that were measured there
-/// (three samples with theta_d up to 1.5 degrees, else up to 3 or 5, their half vectors at least 10 degrees off the
-/// normal) they are on the mean more than twice as high as around it (theta_d of 4 to 8 degrees, or that much wider).
-bool backscatters(const SampleSource& source);
-
-/// The theta_d below which samples weigh more where a source backscatters, radians; HomomorphicOptions::backscatter.
-inline constexpr double kBackscatterReach = 0.03;
 
 /// The lobe of at most `bytes`, see model_bytes, that predicts held-out samples best: p(wo) p(wi) q(h) m(theta_m)
 /// r(theta_d), p and q hemispheres where the source is anisotropic, or fewer of these factors where the bytes are few;

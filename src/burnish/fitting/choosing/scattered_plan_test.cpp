@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <burnish/factors/fetches.h>
+#include <burnish/fitting/choosing/backscatter.h>
+#include <burnish/fitting/choosing/scattered_forms.h>
 #include <burnish/fitting/choosing/scattered_plan.h>
 #include <burnish/fitting/fit.h>
 #include <burnish/fitting/one_lobe/cross_validation.h>
