@@ -7,7 +7,7 @@
 
 namespace burnish {
 
-/// Of a number that a model stores beside its tables: a scale, a warp's parameter, a projection's coefficient.
+/// Bytes of a number that a model stores beside its tables: a scale, a warp's parameter, a projection's coefficient.
 inline constexpr std::size_t kNumberBytes = 4;
 
 /// Counts a model's bytes piece by piece, as FactoredBrdf::bytes says. Every budget is kept by this count.

@@ -20,7 +20,7 @@ FittedLobe fit_one(const FittedSource& source, const FitOptions& options, ModelS
 FittedLobe fit_scattered(const FittedSource& source, const FitOptions& options, const LogLinear& how,
                          std::uint64_t bytes, std::optional<int> fetches, const Stages& stages);
 
-/// Whether a table of the spec is a hemisphere.
+/// Returns true if a table of the spec is a hemisphere.
 bool has_disk(const ModelSpec& spec);
 
 }  // namespace burnish

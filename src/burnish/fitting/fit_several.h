@@ -8,11 +8,11 @@
 
 namespace burnish {
 
-/// How several lobes are refined for a loss: the options' smoothness, the source's format.
+/// Returns the options that refine several lobes for a loss: the options' smoothness, the source's format.
 RefineOptions refine_options(const FittedSource& source, const FitOptions& options, FitLoss loss,
                              const Stages& stages);
 
-/// Whether last steps look at albedos: of a function that is fitted for pictures.
+/// Returns true if the last steps look at albedos: for a function that is fitted for pictures.
 bool counts_albedos(const FittedSource& source, FitLoss loss);
 
 /// Adds the albedos of what is fitted to the set, and their share to the loss. Precondition: source.samples() is null.

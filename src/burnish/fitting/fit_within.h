@@ -21,7 +21,7 @@ class WithinBytes {
   WithinBytes(const FittedSource& source, const FitOptions& options, const Budget& budget,
               std::uint64_t bytes, const Stages& stages);
 
-  /// Whether the bytes hold every table of the plan that they give.
+  /// Returns true if the bytes hold every table of the plan that they give.
   bool holds() const { return holds(bytes_); }
   /// Throws Error, which names the least bytes, unless they do.
   void check() const;

@@ -9,7 +9,7 @@
 
 namespace burnish {
 
-/// What came of one form of fit, before it is scored: a model, and the part of the report that says how it came to be.
+/// The result of one form of fit, before it is scored: a model, and the part of the report that says how it came to be.
 struct FittedModel {
   std::variant<FactoredBrdf, BaselineBrdf> brdf;
   decltype(FitReport::how) how;

@@ -34,11 +34,11 @@ class Stages {
   std::string what_;
 };
 
-/// What is fitted of a source: the function that its owner makes of it, or its nodes, see FitTarget. Training sets, and
+/// The target of a fit: the function that its owner makes of it, or its nodes, see FitTarget. Training sets, and
 /// what tells how good a model can be, are drawn from it. Source and options must outlive it.
 class FittedSource {
  public:
-  /// Where nodes are fitted, takes them and finds the function between them, which takes seconds. Throws Error for
+  /// If nodes are fitted, takes them and finds the function between them, which takes seconds. Throws Error for
   /// options that exclude each other, and as measured_nodes and choose_covariance do.
   FittedSource(const Source& source, const FitOptions& options, const Stages& stages);
   FittedSource(const FittedSource&) = delete;
@@ -48,19 +48,19 @@ class FittedSource {
   const Source& source() const noexcept { return source_; }
   std::size_t channels() const noexcept { return brdf_.channels(); }
   bool isotropic() const noexcept { return brdf_.isotropic(); }
-  /// What is fitted, where it is a function, and what models are scored against.
+  /// The function that is fitted, if the target is one, and that models are scored against.
   BrdfRef reference() const;
   /// Samples that are fitted as they are; null for a function.
   const Samples* samples() const noexcept;
-  /// Whether those are scattered samples of the source.
+  /// Returns true if those are scattered samples of the source.
   bool scattered() const noexcept { return samples() && !nodes_; }
   /// The nodes that are the target, if they are.
   const std::optional<MeasuredNodes>& nodes() const noexcept { return nodes_; }
   /// The function between the nodes of an isotropic source, where nodes are the target.
   const std::optional<KrigedNodes>& between() const noexcept { return between_; }
-  /// What is known of the nodes before a model is; none where they are not the target.
+  /// The facts that are known of the nodes before a model is; none where they are not the target.
   const std::optional<NodesReport>& nodes_report() const noexcept { return nodes_report_; }
-  /// Whether a fit follows the function between nodes most where these are: a table's crowd where highlights are.
+  /// Returns true if a fit follows the function between nodes most where these are: a table's crowd where highlights are.
   /// Scattered samples stand anywhere, and their function is fitted as any other.
   bool judged_at_nodes() const noexcept { return between_ && !source_.samples(); }
   /// The source's table of half and difference angles, if it is one and not its nodes are fitted.
@@ -89,7 +89,7 @@ class FittedSource {
   FigureOptions held_out() const;
   /// The same of baselines.
   FigureOptions held_out_of_baselines() const;
-  /// What models of it are scored by, and the noise of the measurement itself where something tells it.
+  /// The scorer of its models, and the noise of the measurement itself where something tells it.
   NoiseScale noise_scale() const;
 
  private:
