@@ -14,12 +14,12 @@ burnish=${BURNISH_CLI:-build/release/apps/burnish/burnish}
 web=build/web
 mkdir -p "$web"
 cp tests/web/*.mjs "$web"
-cmp -s tests/web/package.json "$web/package.json" || cp tests/web/package.json "$web"
+cmp -s tests/web/package-lock.json "$web/package-lock.json" || cp tests/web/package.json tests/web/package-lock.json "$web"
 for tool in node npm chromium; do
   command -v "$tool" > /dev/null || skip "${1:-}" "no $tool, so exports were not opened elsewhere"
 done
-[ "$web/node_modules/.package-lock.json" -nt "$web/package.json" ] ||
-  (cd "$web" && timeout 120 npm install --silent --no-audit --no-fund > /dev/null 2>&1) ||
+[ "$web/node_modules/.package-lock.json" -nt "$web/package-lock.json" ] ||
+  (cd "$web" && timeout 120 npm ci --silent --no-audit --no-fund > /dev/null 2>&1) ||
   skip "${1:-}" "npm cannot be reached, so exports were not opened elsewhere"
 
 "$burnish" fit ggx:alpha_x=0.2,alpha_y=0.35,f0=0.9/0.7/0.4 --model pqp --samples 50000 -o "$web/brushed.exr" > /dev/null
