@@ -2,13 +2,13 @@
 # make test   installs tools, builds with sanitizers and optimized, runs every test
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
-# make deb, make wheel, make npm: packages in build/packages; make release-check installs each in an empty
-# system and runs it, and builds and tests on bare systems
+# make deb, make wheel, make sdist, make npm: packages in build/packages; make release: all of them, the sources and the
+# page too; make release-check installs each in an empty system and runs it, and builds and tests on bare systems
 # make studio the library as WebAssembly, its npm package and the page in build/studio; make studio-test tests them
 # make bench, make compile-cost, make fuzz, make damaged, make report, make cost-report, make sampling-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
 # make cluster-test  a batch on a real Slurm of two nodes on this machine, killed now and then
-.PHONY: test-announcement cluster-test compile-cost demo test build reports python deb wheel npm packaging-deps release-check studio studio-test build-deps deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api options
+.PHONY: test-announcement cluster-test compile-cost demo test build reports python deb wheel sdist npm source-archive packaging-deps release release-check studio studio-test build-deps deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api options
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -77,22 +77,44 @@ deb: packaging-deps build
 	@rm -rf $(RELEASE)/*.deb && cpack --config build/release/CPackConfig.cmake -B $(CURDIR)/$(RELEASE) > /dev/null
 	@rm -rf $(RELEASE)/_CPack_Packages && ls $(RELEASE)/*.deb
 
+# PYTHONS: what wheels are made by; without it python3, and a newer one where python3 is older than 3.12.
+PYTHONS ?=
 wheel: packaging-deps deps
-	@python/wheel.sh $(RELEASE)
+	@BURNISH_WERROR=$(WERROR) python/wheel.sh $(RELEASE) $(PYTHONS)
+
+sdist: packaging-deps
+	@python/sdist.sh $(RELEASE)
 
 npm: studio
 	@mkdir -p $(RELEASE) && rm -f $(RELEASE)/*.tgz
 	@npm pack --silent --pack-destination $(RELEASE) ./build/studio/package > /dev/null && ls $(RELEASE)/*.tgz
 
+# All that a release is, of the commit that is checked out, each named with its version.
+VERSION := $(shell sed -n 's/^project.burnish VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+source-archive:
+	@mkdir -p $(RELEASE)
+	@git archive --prefix=burnish-$(VERSION)/ -o $(RELEASE)/burnish-$(VERSION)-source.tar.gz HEAD
+	@ls $(RELEASE)/burnish-$(VERSION)-source.tar.gz
+
+release:
+	@tests/release/versions.sh
+	@rm -rf $(RELEASE)
+	@$(MAKE) -s deb wheel sdist npm source-archive
+	@tar -C build/studio --transform 's,^\.,burnish-studio-$(VERSION),' -czf $(RELEASE)/burnish-studio-$(VERSION).tar.gz .
+	@tests/notices/check.py $(RELEASE)/*.deb $(RELEASE)/*.whl $(RELEASE)/*.tgz $(RELEASE)/burnish-studio-*.tar.gz
+	@tests/release/versions.sh $(RELEASE)
+	@cd $(RELEASE) && sha256sum burnish* > SHA256SUMS && cat SHA256SUMS
+
 SYSTEMS ?= bookworm trixie
-release-check: deb wheel npm
-	@$(SUDO) tests/release/check.sh $(RELEASE)
+release-check: release
+	@$(SUDO) env "PYTHONS=$(PYTHONS)" tests/release/check.sh $(RELEASE)
 	@for suite in $(SYSTEMS); do $(SUDO) tests/systems/check.sh $$suite || exit 1; done
 
 studio: studio-deps
 	@cmake --preset wasm -DBURNISH_WERROR=$(WERROR) > /dev/null
 	@cmake --build --preset wasm -j $(JOBS)
 	@rm -rf build/studio && mkdir -p build/studio && cp -r web/studio/* build/wasm/package build/studio
+	@cp build/studio/package/LICENSE build/studio/package/THIRD_PARTY_NOTICES build/studio/package/burnish.cdx.json build/studio
 
 studio-test: studio build
 	@tests/web/package.sh

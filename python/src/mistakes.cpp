@@ -36,8 +36,8 @@ void explain(PyObject* function, PyObject* const* arguments, std::size_t count, 
     const bool makes_one = nb::cast<std::string>(nb::handle(function).attr("__name__")) == "__init__";
     if (makes_one) positional.append(nb::none());  // what is not yet made is no object to hand on
     for (std::size_t i = makes_one; i < count; ++i) positional.append(nb::handle(arguments[i]));
-    for (Py_ssize_t i = 0; keywords && i < PyTuple_GET_SIZE(keywords); ++i)
-      named[nb::handle(PyTuple_GET_ITEM(keywords, i))] =
+    for (Py_ssize_t i = 0; keywords && i < PyTuple_Size(keywords); ++i)
+      named[nb::handle(PyTuple_GetItem(keywords, i))] =
           nb::handle(arguments[count + static_cast<std::size_t>(i)]);
     const nb::object line =
         nb::module_::import_("burnish._mistakes").attr("explain")(nb::handle(function), positional, named);
@@ -60,10 +60,20 @@ constexpr std::array<vectorcallfunc, kMostKinds> all_calls(std::index_sequence<k
 }
 constexpr auto kCalls = all_calls(std::make_index_sequence<kMostKinds>());
 
-void explain_one(PyObject* function) {
-  const Py_ssize_t offset = Py_TYPE(function)->tp_vectorcall_offset;
-  auto* const slot = reinterpret_cast<vectorcallfunc*>(reinterpret_cast<char*>(function) + offset);
-  if (std::ranges::find(kCalls, *slot) != kCalls.end()) return;
+// Where objects of a type keep the pointer that calls them, 0 where they have none. It is asked of the members that the
+// type was made from, which the stable interface of Python 3.12 hands out; the type itself it hides.
+std::size_t place_of_call(nb::handle type) {
+  const auto* member = static_cast<const PyMemberDef*>(
+      PyType_GetSlot(reinterpret_cast<PyTypeObject*>(type.ptr()), Py_tp_members));
+  for (; member && member->name; ++member)
+    if (std::string_view(member->name) == "__vectorcalloffset__")
+      return static_cast<std::size_t>(member->offset);
+  return 0;
+}
+
+void explain_one(PyObject* function, std::size_t place) {
+  auto* const slot = reinterpret_cast<vectorcallfunc*>(reinterpret_cast<char*>(function) + place);
+  if (!*slot || std::ranges::find(kCalls, *slot) != kCalls.end()) return;
   for (std::size_t kind = 0; kind < kMostKinds; ++kind) {
     if (called_by[kind] && called_by[kind] != *slot) continue;
     called_by[kind] = *slot;
@@ -73,13 +83,17 @@ void explain_one(PyObject* function) {
 }
 
 bool is_bound(nb::handle value) {
-  const std::string_view type = Py_TYPE(value.ptr())->tp_name;
-  return (type == "nanobind.nb_func" || type == "nanobind.nb_method") && PyVectorcall_Function(value.ptr());
+  const nb::handle type = value.type();
+  const auto name = nb::cast<std::string>(type.attr("__name__"));
+  return nb::cast<std::string>(type.attr("__module__")) == "nanobind" &&
+         (name == "nb_func" || name == "nb_method");
 }
 
 void explain_all(nb::handle members) {
   for (const nb::handle value : nb::list(members.attr("values")()))
-    if (is_bound(value)) explain_one(value.ptr());
+    if (is_bound(value)) {
+      if (const std::size_t place = place_of_call(value.type())) explain_one(value.ptr(), place);
+    }
 }
 
 }  // namespace

@@ -152,6 +152,84 @@ def test_lists_and_integers_and_mixtures_are_taken(model, ggx):
         model.eval(w, [0, 1])
 
 
+class Lent:
+    """An array that is no NumPy: it lends its memory (DLPack) and knows nothing else."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def __dlpack__(self, **options):
+        return self.array.__dlpack__(**options)
+
+    def __dlpack_device__(self):
+        return self.array.__dlpack_device__()
+
+
+class Copied:
+    """An array that is no NumPy: it becomes one when asked."""
+
+    def __init__(self, array):
+        self.array, self.dtype = array, f"package.{array.dtype}"
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array(self.array, dtype)
+
+
+class Elsewhere:
+    """An array that the processor cannot read."""
+
+    dtype = "package.float32"
+
+    def __dlpack__(self, **options):
+        raise BufferError("not on this device")
+
+    def __dlpack_device__(self):
+        return 2, 0
+
+    def __array__(self, dtype=None, copy=None):
+        raise TypeError("cannot read card:0\nUse .cpu() first.")
+
+
+@pytest.mark.parametrize("kind", [Lent, Copied])
+def test_arrays_of_other_packages_are_taken(kind, model, ggx):
+    w, up = hemisphere(40), np.array([0, 0, 1], np.float32)
+    for source in (model, ggx):
+        for dtype in (np.float32, np.float64):
+            wi, wo = w.astype(dtype), np.tile(up.astype(dtype), (40, 1))
+            expected = source.eval(wi, wo)
+            for given in ((kind(wi), kind(wo)), (kind(wi), wo), (kind(wi), [0, 0, 1]), (kind(wi), kind(wo[0]))):
+                f = source.eval(*given)
+                assert isinstance(f, np.ndarray) and f.dtype == dtype
+                np.testing.assert_array_equal(f, expected)
+            # across, as NumPy has it reversed in memory
+            np.testing.assert_array_equal(source.eval(kind(wi[::-1]), kind(wo)), expected[::-1])
+            np.testing.assert_array_equal(source.pdf(kind(wi), kind(wo)), source.pdf(wi, wo))
+        # of both types and of integers: float64
+        f = source.eval(kind(w), kind(up.astype(int)))
+        assert f.dtype == np.float64
+        np.testing.assert_array_equal(f, source.eval(w.astype(np.float64), up.astype(np.float64)))
+
+
+def test_results_go_into_arrays_of_other_packages(model):
+    w, out = hemisphere(40), Lent(np.zeros((40, 3), np.float32))
+    assert model.eval(w, w, out=out) is out
+    np.testing.assert_array_equal(out.array, model.eval(w, w))
+    assert model.eval(Lent(w), [0, 0, 1], out=out) is out
+    np.testing.assert_array_equal(out.array, model.eval(w, np.array([0, 0, 1], np.float32)))
+    with pytest.raises(TypeError, match="^out: expected a writable array of float32$"):
+        model.eval(w, w, out=Lent(np.zeros((40, 3))))
+    with pytest.raises(TypeError, match="^out: expected a writable array of float32$"):
+        model.eval(w, w, out=Elsewhere())
+
+
+def test_arrays_on_other_devices_are_refused_with_their_owners_words(model):
+    found = "^wi: expected an array of real numbers, found Elsewhere: cannot read card:0$"
+    with pytest.raises(TypeError, match=found):
+        model.eval(Elsewhere(), hemisphere(1))
+    with pytest.raises(TypeError, match="^wo: .* found complex ones$"):
+        model.eval([0, 0, 1], Lent(np.array([0, 0, 1j])))
+
+
 def test_draws_have_the_density_that_pdf_states(model, ggx):
     rng = np.random.default_rng(3)
     for source in (model, ggx):

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh FOLDER: installs each package of FOLDER (a .deb, a .whl, a .tgz of npm) where nothing else of burnish is, runs
+# check.sh FOLDER: installs each package of FOLDER (a .deb, .whl, the Python package's source, a .tgz of npm) where nothing else of burnish is, runs
 # the demo there (a first fit where there is no command line), and prints what each takes. A package that is missing is
 # a fault. The .deb goes into a Debian made by debootstrap (BURNISH_ROOT=DIR keeps it
 # for the next time), the wheel into an empty virtual environment with no compiler in the path, where its tests pass
@@ -70,22 +70,56 @@ check_library() {
   echo "a program is built against its library, by pkg-config and by CMake"
 }
 
+# version PYTHON: as 311; nothing where it does not run
+version() { "$1" -c 'import sys; print("%d%d" % sys.version_info[:2])' 2> /dev/null || true; }
+
+# What a wheel is for, of the Pythons that are here (PYTHONS names more): its own, or with a stable ABI all newer ones.
 check_wheel() {
   echo "== $(size "$1")"
   at_most "$1" 12
+  local python made tried=
+  made=$(basename "$1" | sed 's/.*-cp\(3[0-9]*\)-.*/\1/')
+  for python in $(printf '%s\n' python3 python3.{10..20} ${PYTHONS:-} | awk '!seen[$0]++'); do
+    local own=$(version "$python")
+    [ -n "$own" ] && [[ " $tried " != *" $own "* ]] || continue
+    case $1 in
+      *-abi3-*) [ "$own" -ge "$made" ] || continue ;;
+      *) [ "$own" = "$made" ] || continue ;;
+    esac
+    tried="$tried $own"
+    check_wheel_with "$1" "$python"
+  done
+  [ -n "$tried" ] || echo "NOT TRIED: no Python that this wheel is for is here; PYTHONS=... names one" >&2
+}
+
+# check_wheel_with WHEEL PYTHON
+check_wheel_with() {
   local start
   start=$(date +%s)
-  python3 -m venv "$work/venv"
+  rm -rf "$work/venv" "$work/empty"
+  "$2" -m venv "$work/venv"
   mkdir "$work/empty"
   (cd "$work/empty" && export PATH="$work/venv/bin" && pip --disable-pip-version-check -q install --only-binary :all: "$1" &&
     python "$here/tests/release/first_fit.py")
   local taken=$(seconds "$start")
-  echo "from pip install to the first fit: $taken"
+  echo "$("$2" --version): from pip install to the first fit: $taken"
   [ "${taken% s}" -le 30 ] || { echo "more than 30 s" >&2; exit 1; }
   # its own tests; those of Mitsuba, MaterialX and USD skip where these are not
   (cd "$work/empty" && export PATH="$work/venv/bin" BURNISH_CLI="$here/build/release/apps/burnish/burnish" &&
     pip --disable-pip-version-check -q install --only-binary :all: pytest && ! command -v c++ &&
     python -m pytest -q -p no:cacheprovider --rootdir "$here" "$here/python/tests")
+}
+
+# The source, built by pip alone, as on a machine that has what `make deps` installs.
+check_sdist() {
+  echo "== $(size "$1")"
+  at_most "$1" 3
+  local start
+  start=$(date +%s)
+  python3 -m venv "$work/from-source"
+  (cd "$work" && "$work/from-source/bin/pip" --disable-pip-version-check -q install "$1" &&
+    "$work/from-source/bin/python" "$here/tests/release/first_fit.py")
+  echo "from pip install of the source to the first fit: $(seconds "$start")"
 }
 
 check_npm() {
@@ -105,4 +139,5 @@ check() {
 }
 for package in "$folder"/*.deb; do check deb "$package"; done
 for package in "$folder"/*.whl; do check wheel "$package"; done
+for package in "$folder"/burnish-[0-9]*[0-9].tar.gz; do check sdist "$package"; done
 for package in "$folder"/*.tgz; do check npm "$package"; done

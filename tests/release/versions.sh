@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# versions.sh [FOLDER]: one version in all that states one, and, of FOLDER, in the name of every artefact.
+set -euo pipefail
+here=$(cd "$(dirname "$0")/../.." && pwd)
+version=$(sed -n 's/^project(burnish VERSION \([0-9.]*\).*/\1/p' "$here/CMakeLists.txt")
+npm=$(sed -n 's/^  "version": "\(.*\)",$/\1/p' "$here/web/package/package.json")
+[ "$npm" = "$version" ] || { echo "web/package/package.json: expected version $version, found $npm" >&2; exit 1; }
+[ $# = 1 ] || exit 0
+for kind in "_$version[-_]*.deb" "-$version-*.whl" "-$version.tar.gz" "-$version.tgz" "-$version-source.tar.gz" \
+    "-studio-$version.tar.gz"; do
+  compgen -G "$1/burnish$kind" > /dev/null || { echo "$1: expected burnish$kind, found none" >&2; exit 1; }
+done
+for file in "$1"/*; do
+  [[ $(basename "$file") = *"$version"* ]] || { echo "$file: expected a name with $version" >&2; exit 1; }
+done
