@@ -18,4 +18,8 @@ CXX=${CXX:-c++} "${pip[@]}" install --no-build-isolation --no-deps --force-reins
 # What C++ tests need of these packages: MaterialX, whose shader OpenPBR is held to.
 tests=build/release/src/burnish/burnish_tests
 [ ! -x "$tests" ] || "$tests" --gtest_brief=1 --gtest_filter='GlOpenPbr.*'
+# The papers of a wheel name nanobind too, as it is installed here.
+status=0
+tests/notices/check.py --python "$(echo "$venv"/lib/python3*/site-packages)" || status=$?
+[ "$status" = 0 ] || [ "$status" = 77 ] || exit "$status"
 exec "$venv/bin/python" -m pytest -q
