@@ -11,6 +11,10 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#if PY_VERSION_HEX < 0x030C0000
+#include <structmember.h>  // PyMemberDef, which Python.h has from 3.12 on
+#endif
+
 #include <burnish/math/closest_name.h>
 #include <burnish/short_message.h>
 
