@@ -25,6 +25,7 @@ ALLOWED = {
     "textures": [],
     "shaders": [],
     "hardware": [],
+    "lighting": [],
     "report": [],
     "render": ["shaders"],
     "export": ["fitting", "io", "render", "shaders", "textures"],
