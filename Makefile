@@ -5,10 +5,10 @@
 # make deb, make wheel, make sdist, make npm: packages in build/packages; make release: all of them, the sources and the
 # page too; make release-check installs each in an empty system and runs it, and builds and tests on bare systems
 # make studio the library as WebAssembly, its npm package and the page in build/studio; make studio-test tests them
-# make bench, make compile-cost, make fuzz, make damaged, make report, make cost-report, make sampling-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
+# make bench, make compile-cost, make fuzz, make damaged, make report, make cost-report, make sampling-report, make area-light-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
 # make cluster-test  a batch on a real Slurm of two nodes on this machine, killed now and then
-.PHONY: test-announcement cluster-test compile-cost demo test build reports python deb wheel sdist npm source-archive packaging-deps release release-check studio studio-test build-deps deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api options
+.PHONY: test-announcement cluster-test compile-cost demo test build reports python deb wheel sdist npm source-archive packaging-deps release release-check studio studio-test build-deps deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report area-light-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api options
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -140,11 +140,12 @@ REPORTS := build/release/apps/reports/burnish_reports
 report: NAMES := results accuracy measured cost
 cost-report: NAMES := cost
 sampling-report: NAMES := sampling
+area-light-report: NAMES := area-lights
 shader-report: NAMES := shaders
 openpbr-report: NAMES := openpbr
 frame-cost: NAMES := frame-cost
 surface-report: NAMES := surfaces
-report cost-report sampling-report shader-report openpbr-report frame-cost surface-report: reports
+report cost-report sampling-report area-light-report shader-report openpbr-report frame-cost surface-report: reports
 	@export BURNISH_COMMIT="$(COMMIT)"; for name in $(NAMES); do $(REPORTS) $$name docs/results || exit 1; done
 
 HW := build/hw-report

@@ -35,6 +35,7 @@ const Report kReports[] = {
      {"halves", "incidences", "repeat", "formats", "noise", "order", "scattered"}},
     {"cost", "error beside nanoseconds, fetches and milliseconds a frame, of fits and of other methods",
      report_cost},
+    {"area-lights", "spheres under square lamps: tables of area lights beside samples", report_area_lights},
     {"sampling", "ways of drawing directions: weights, variance, time", report_sampling},
     {"shaders",
      "precision and cost of generated shaders, and light from all around",

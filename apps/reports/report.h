@@ -55,6 +55,7 @@ class Page {
 
 // One for each name of burnish_reports; they throw Error.
 void report_accuracy(const ReportOptions& options);
+void report_area_lights(const ReportOptions& options);
 void report_cost(const ReportOptions& options);
 void report_frame_cost(const ReportOptions& options);
 void report_measured(const ReportOptions& options);

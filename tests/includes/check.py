@@ -25,7 +25,7 @@ ALLOWED = {
     "textures": [],
     "shaders": [],
     "hardware": [],
-    "lighting": [],
+    "lighting": ["shaders"],
     "report": [],
     "render": ["shaders"],
     "export": ["fitting", "io", "render", "shaders", "textures"],

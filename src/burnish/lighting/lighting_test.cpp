@@ -1,16 +1,28 @@
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
 #include <burnish/lighting/area_light_fit.h>
+#include <burnish/lighting/area_light_shader.h>
 #include <burnish/lighting/area_light_table.h>
 #include <burnish/lighting/area_lights.h>
+#include <burnish/lighting/rectangle_formula.h>
 #include <burnish/lighting/transformed_cosine.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/half_vector_quadrature.h>
+#include <burnish/render/gl/gl_function.h>
+#include <burnish/render/gl/gl_objects.h>
+#include <burnish/testing/compilers.h>
+#include <burnish/testing/gl.h>
 
 namespace burnish {
 namespace {
@@ -178,6 +190,127 @@ TEST(AreaLightFit, ViewsBelowTheHorizonAreDarkAndBadOptionsFail) {
   EXPECT_EQ(table.lobe_bytes(), 9u * 16);
   EXPECT_THROW(fit_area_lights(brdf, {.lobes = 4}), Error);
   EXPECT_THROW(fit_area_lights(brdf, {.thetas = 3}), Error);
+}
+
+TEST(RectangleFormula, IsTheDefinitionForQuadrilaterals) {
+  Pcg32 random(3);
+  const auto draw = [&](double size) { return size * (2 * random.uniform() - 1); };
+  int cut = 0;
+  for (int i = 0; i < 500; ++i) {
+    const std::array quad = rectangle_light({draw(2), draw(2), draw(2)}, {draw(1), draw(1), draw(1)},
+                                            {draw(1), draw(1), draw(1)});
+    const LitQuad<Vec3> lit(quad);
+    EXPECT_NEAR(lit.cosine_share(), cosine_share(quad), 2e-5);
+    EXPECT_NEAR(lit.lobe_share([](Vec3 w) { return kLobe.to_cosine(w); }), lobe_share(kLobe, quad), 2e-5);
+    cut += clipped_above(quad).size() == 5;
+  }
+  EXPECT_GT(cut, 20);
+}
+
+TEST(RectangleFormula, AngleOverSineIsWithinItsBound) {
+  for (int i = 0; i < 1000; ++i) {
+    const double x = (i + 0.5) / 1000, exact = std::acos(x) / std::sqrt(1 - x * x);
+    EXPECT_NEAR(angle_over_sine(x), exact, 5e-6);
+    if (x < 0.99) {
+      const double other = std::acos(-x) / std::sqrt(1 - x * x);
+      EXPECT_NEAR(angle_over_sine(-x), other, 1e-5 * other);
+    }
+  }
+}
+
+// A small table without a fit, whose values vary with the view.
+AreaLightTable made_table(AreaLightViews views) {
+  AreaLightTable table{.views = views,
+                       .thetas = 6,
+                       .azimuths = views == AreaLightViews::line ? 1u : 5u,
+                       .cosine = {},
+                       .lobes = {}};
+  table.lobes.resize(2);
+  for (std::size_t i = 0; i < table.nodes(); ++i) {
+    const auto at = static_cast<float>(i);
+    for (const float c : {0.1F, 0.2F, 0.3F}) table.cosine.push_back(c + 0.01F * at);
+    for (std::size_t j = 0; j < 2; ++j) {
+      const bool line = views == AreaLightViews::line;
+      for (const float b : {2 + 0.1F * at, line ? 0 : 0.2F, -0.2F, line ? 0 : 0.1F, 3 - 0.05F * at,
+                            line ? 0 : 0.3F, 0.25F, line ? 0 : -0.1F, 1.0F})
+        table.lobes[j].inverse.push_back(b);
+      for (const float c : {0.5F, 0.3F, 0.1F}) table.lobes[j].amplitude.push_back(c * (j == 0 ? 1 : 0.5F));
+    }
+  }
+  return table;
+}
+
+constexpr const char* kCalls =
+    "burnish_test_quad(a, a, a, a, a) + burnish_test_quad_world(a, a, a, a, a, a, a), 1.0)";
+
+// What makes a program of the functions.
+std::string main_of(ShaderLanguage language) {
+  if (language == ShaderLanguage::hlsl)
+    return fmt::format(
+        "float4 main(float4 at : SV_Position) : SV_Target {{ float3 a = at.xyz; return float4({}; }}\n",
+        kCalls);
+  if (language == ShaderLanguage::wgsl)
+    return fmt::format(
+        "@fragment fn main(@builtin(position) at: vec4f) -> @location(0) vec4f {{ let a = at.xyz; return "
+        "vec4f({}; }}\n",
+        kCalls);
+  return fmt::format("out vec4 color;\nvoid main() {{ vec3 a = vec3(0, 0, 1); color = vec4({}; }}\n", kCalls);
+}
+
+TEST(AreaLightShader, CompilesInEveryLanguageWithACompiler) {
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "area_light_shader";
+  std::filesystem::create_directories(folder);
+  int compiled = 0;
+  for (const Checked& checked : kChecked) {
+    if (std::system(fmt::format("command -v {} > /dev/null 2>&1", checked.tool).c_str()) != 0) continue;
+    std::string files;
+    for (const AreaLightViews views : {AreaLightViews::line, AreaLightViews::quarter, AreaLightViews::full}) {
+      const std::filesystem::path file = folder / fmt::format("{}_{}.{}", to_string(checked.language),
+                                                              static_cast<int>(views), checked.extension);
+      std::ofstream(file) << checked.before
+                          << generate_shader(made_table(views), checked.language, "test").text
+                          << main_of(checked.language);
+      files += " " + file.string();
+    }
+    EXPECT_TRUE(runs(fmt::format(fmt::runtime(checked.command), files), folder / "log"));
+    ++compiled;
+  }
+  if (compiled == 0) GTEST_SKIP() << "no compiler of shaders";
+}
+
+TEST(AreaLightShader, NeedsTexturesAndAName) {
+  EXPECT_THROW(generate_shader(made_table(AreaLightViews::line), ShaderLanguage::cpp, "test"), Error);
+  EXPECT_THROW(generate_shader(made_table(AreaLightViews::line), ShaderLanguage::glsl, "a b"), Error);
+}
+
+TEST(AreaLightShader, ComputesWhatTheTableSays) {
+  const TestContext gl;
+  if (!gl.context) GTEST_SKIP() << gl.reason;
+  for (const AreaLightViews views : {AreaLightViews::line, AreaLightViews::quarter, AreaLightViews::full}) {
+    const AreaLightTable table = made_table(views);
+    const AreaLightShader shader = generate_shader(table, ShaderLanguage::glsl, "test");
+    GlFunction function(shader.text +
+                            "vec3 lit(vec3 wo, vec3 c) { vec3 u = vec3(.5, .1, .2), v = vec3(-.1, .4, .3);\n"
+                            "  return burnish_test_quad(wo, c - u - v, c + u - v, c + u + v, c - u + v); }\n",
+                        "lit");
+    function.set_texture(upload_of(shader.texture, TableFormat::single, true));
+    Pcg32 random(9);
+    std::vector<GlVectors> calls;
+    std::vector<Rgb> expected;
+    for (int i = 0; i < 300; ++i) {
+      const Vec3 wo = spherical_direction(1.5 * random.uniform(), kTwoPi * random.uniform());
+      const Vec3 c{3 * random.uniform() - 1.5, 3 * random.uniform() - 1.5, 2 * random.uniform() - 0.4};
+      calls.push_back({{static_cast<float>(wo.x), static_cast<float>(wo.y), static_cast<float>(wo.z)},
+                       {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}});
+      expected.push_back(reflected(table, rectangle_light(c, {.5, .1, .2}, {-.1, .4, .3}), wo));
+    }
+    const std::vector<float> got = function.call(calls);
+    for (std::size_t i = 0; i < calls.size(); ++i) {
+      // texture units weigh nodes with 8 bits
+      EXPECT_NEAR(static_cast<double>(got[3 * i]), expected[i].r, 4e-3) << i;
+      EXPECT_NEAR(static_cast<double>(got[3 * i + 2]), expected[i].b, 4e-3) << i;
+    }
+  }
 }
 
 }  // namespace
