@@ -87,6 +87,7 @@ TEST_F(Export, MultipliesInHalfPrecisionWhereAsked) {
   EXPECT_THAT(read(folder_ / "out/two_lobes.wgsl"), HasSubstr("enable f16;"));
   EXPECT_EQ(exports("--to glsl --half --exact"), 2);
   EXPECT_EQ(exports("--to cpp --half"), 2);
+  EXPECT_EQ(exports("--to cpp --area"), 2);
 }
 
 TEST_F(Export, RefusesWhatIsNoModelAndNoTargetAndLeavesNothing) {

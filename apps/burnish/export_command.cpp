@@ -28,7 +28,7 @@ struct ExportArguments {
   std::string model, folder, name, power, environment;
   std::vector<std::string> to;
   int cells = ExportOptions{}.cells;
-  bool exact = false, half = false, plain = false, blocks = false, mips = false, json = false;
+  bool exact = false, half = false, plain = false, blocks = false, mips = false, area = false, json = false;
 };
 
 std::string name_of(const std::string& path) {
@@ -43,6 +43,7 @@ ExportOptions options_of(const ExportArguments& arguments) {
                         .mips = arguments.mips,
                         .compressed = !arguments.plain,
                         .blocks = arguments.blocks,
+                        .area = arguments.area,
                         .cells = arguments.cells};
   for (const std::string& to : arguments.to) options.to.push_back(export_target(to));
   return options;
@@ -57,6 +58,8 @@ ExportedFiles exported_analytic(const ExportArguments& arguments, const Analytic
   ExportOptions options = options_of(arguments);
   if (options.name.empty())
     options.name = is_analytic_spec(arguments.model) ? std::string(model) : name_of(arguments.model);
+  if (arguments.area)
+    throw CLI::ValidationError("--area: expected a factored BRDF with it, found " + arguments.model);
   std::optional<PowerMethod> power;
   if (!arguments.power.empty()) power = usage([&] { return power_method(arguments.power); });
   if (model != "openpbr") return export_specular(format_analytic(brdf), power, options);
@@ -74,6 +77,9 @@ ExportedFiles exported_model(const ExportArguments& arguments, const Source& sou
   if (options.half && std::ranges::none_of(options.to, has_half_products))
     throw CLI::ValidationError(
         fmt::format("--half: expected --to {} with it, found others", targets_that(has_half_products)));
+  if (options.area && std::ranges::none_of(options.to, has_half_products))
+    throw CLI::ValidationError(
+        fmt::format("--area: expected --to {} with it, found others", targets_that(has_half_products)));
   if (options.name.empty()) options.name = name_of(arguments.model);
   const FactoredBrdf brdf = to_model(source).brdf;
   options.environment = environment_of(arguments.environment);
@@ -83,6 +89,7 @@ ExportedFiles exported_model(const ExportArguments& arguments, const Source& sou
 ExportedFiles exported_surface(const ExportArguments& arguments, const FileBytes& file) {
   if (!arguments.power.empty() || !arguments.environment.empty() || arguments.half)
     throw CLI::ValidationError("--power, --environment, --half: expected a model with them, found a surface");
+  if (arguments.area) throw CLI::ValidationError("--area: expected a model with it, found a surface");
   ExportOptions options = options_of(arguments);
   if (arguments.blocks && std::ranges::none_of(options.to, has_map_textures))
     throw CLI::ValidationError("--blocks: expected --to ktx2 or a shader language with it, found others");
@@ -174,6 +181,8 @@ void add_export_command(CLI::App& app) {
   verb->add_flag("--half", arguments->half,
                  "Writes shaders that multiply texels in half precision, within 1 %; cpp stays single.")
       ->excludes(exact);
+  verb->add_flag("--area", arguments->area,
+                 "Writes functions of area lights too, NAME.area.*, with their own texture; cpp has none.");
   verb->add_flag("--mips", arguments->mips,
                  "Writes KTX2 with mip levels, which average over the directions of a texel.");
   verb->add_flag("--plain", arguments->plain, "Writes KTX2 without Zstandard.");

@@ -28,7 +28,7 @@ ALLOWED = {
     "lighting": ["shaders"],
     "report": [],
     "render": ["shaders"],
-    "export": ["fitting", "io", "render", "shaders", "textures"],
+    "export": ["fitting", "io", "lighting", "render", "shaders", "textures"],
     "library": ["io", "fitting", "export"],
     "capture": ["eval", "fitting", "io", "render"],
 }

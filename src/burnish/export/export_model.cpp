@@ -18,6 +18,8 @@
 #include <burnish/fitting/parametric/gltf_json.h>
 #include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/io/convert.h>
+#include <burnish/lighting/area_light_fit.h>
+#include <burnish/lighting/area_light_shader.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/render/gl/surface_environment.h>
 #include <burnish/shaders/shader.h>
@@ -70,6 +72,7 @@ class ModelExport {
   void add_mdl();
   void add_rgl();
   void add_light(const SurfaceLight& light);
+  void add_area_lights();
 
   const FactoredBrdf& brdf_;
   const ExportOptions& options_;
@@ -247,6 +250,34 @@ void ModelExport::add_light(const SurfaceLight& light) {
   manifest_["light"] = std::move(entry);
 }
 
+// Functions of area lights in every language that has textures, and the texture that all of them read.
+void ModelExport::add_area_lights() {
+  const AreaLightTable table = fit_area_lights(brdf_);
+  json entry{{"lobes", table.lobes.size()}, {"table_bytes", table.bytes()}};
+  ShaderTexture texture;
+  for (const ShaderLanguage language : kShaderLanguages) {
+    if (!wants(language) || language == ShaderLanguage::cpp) continue;
+    AreaLightShader shader = generate_shader(table, language, options_.name);
+    const std::string& file = add(shader_file(language, options_.name + ".area"), shader.text);
+    result_.shaders.push_back({file, "area lights", shader.cost});
+    entry["shaders"].push_back({{"file", file},
+                                {"function", fmt::format("burnish_{}_quad", options_.name)},
+                                {"arguments", {"wo", "p0", "p1", "p2", "p3"}},
+                                {"world_function", fmt::format("burnish_{}_quad_world", options_.name)}});
+    texture = std::move(shader.texture);  // the same for all
+  }
+  const Texture stored{.format = texture.format,
+                       .channels = texture.channels,
+                       .width = texture.width,
+                       .height = texture.height,
+                       .depth = 0,
+                       .levels = {std::move(texture.values)}};
+  const std::string& file = add(options_.name + ".area.ktx2", encode_ktx2(stored, options_.compressed));
+  entry["texture"] = manifest_entry(file, stored);
+  entry["texture"]["sampler"] = texture.name;
+  manifest_["area"] = std::move(entry);
+}
+
 ExportedFiles ModelExport::run() && {
   // shaders and what they read
   bool textures = wants(ExportTarget::ktx2);
@@ -257,6 +288,8 @@ ExportedFiles ModelExport::run() && {
   }
   if (textures) add_textures();
   if (textures && options_.mips) add_levels();
+
+  if (options_.area) add_area_lights();
 
   // tables in other formats
   const std::string& name = options_.name;
@@ -294,6 +327,9 @@ ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& option
   if (options.environment && std::ranges::none_of(options.to, shows_environment))
     throw Error(
         fmt::format("environment: expected {} with it, found others", targets_that(shows_environment)));
+  if (options.area && std::ranges::none_of(options.to, has_half_products))
+    throw Error(
+        fmt::format("export: expected {} with area lights, found others", targets_that(has_half_products)));
   if (options.half && std::ranges::none_of(options.to, has_half_products))
     throw Error(
         fmt::format("export: expected {} with half products, found others", targets_that(has_half_products)));

@@ -19,15 +19,20 @@ struct ExportOptions {
   bool mips = false;       ///< KTX2 a table with levels too: averages over the directions of a texel
   bool compressed = true;  ///< KTX2 with Zstandard
   bool blocks = false;     ///< KTX2 of a surface's maps as pairs in blocks, and shaders that read these
-  int cells = 90;          ///< of mdl: along each polar angle, in [2, 1000]; twice as many along the azimuth
+  bool area =
+      false;       ///< shaders too of area lights, see lighting/area_light_shader.h; their fit takes seconds
+  int cells = 90;  ///< of mdl: along each polar angle, in [2, 1000]; twice as many along the azimuth
   /// Light from all around, for the targets of shows_environment.
   std::optional<Environment> environment = {};
 };
 
-/// A factored BRDF as every target of `to`, each once; shaders but C++ bring their textures along. Throws Error as
-/// generate_shader does, for an environment that no target shows, half without a language that has it or with
-/// `exact`, and for glTF of other than 1 or 3 channels. The target gltf has the nearest material of glTF, usda the
-/// nearest OpenPBR and core material, which take seconds to find.
+/// Writes a factored BRDF as every target of `to`, each once; shaders but C++ bring their textures along. The target gltf
+/// has the nearest material of glTF, usda the nearest OpenPBR and core material, which take seconds to find. Throws Error
+/// as generate_shader does, and for:
+/// - an environment that no target shows;
+/// - area lights without a language that has textures;
+/// - half without a language that has it, or with `exact`;
+/// - glTF of other than 1 or 3 channels.
 ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& options);
 
 }  // namespace burnish

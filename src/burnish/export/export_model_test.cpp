@@ -85,6 +85,22 @@ TEST(ExportModel, BringsTheMeasurementThatItsMdlModuleNames) {
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(f[c], expected[c], 1e-5 * expected[c]);
 }
 
+TEST(ExportModel, BringsAreaLightsInEveryLanguageThatHasTextures) {
+  if (BURNISH_SANITIZED) GTEST_SKIP() << "fits for a minute";
+  ExportOptions options{
+      .to = {ExportTarget::glsl, ExportTarget::wgsl, ExportTarget::cpp}, .name = "paint", .area = true};
+  const ExportedFiles exported = export_model(small_model(), options);
+  EXPECT_THAT(file_of(exported, "paint.area.glsl"),
+              HasSubstr("vec3 burnish_paint_quad_world(vec3 n, vec3 t, vec3 v, "));
+  EXPECT_THAT(file_of(exported, "paint.area.wgsl"),
+              HasSubstr("@binding(16) var burnish_paint_area: texture_2d<f32>"));
+  EXPECT_FALSE(file_of(exported, "paint.area.ktx2").empty());
+  EXPECT_THAT(exported.files.back().bytes, HasSubstr("\"paint.area.glsl\""));
+  EXPECT_THROW(file_of(exported, "paint.area.cpp"), std::out_of_range);
+  options.to = {ExportTarget::cpp};
+  EXPECT_THROW(export_model(small_model(), options), Error);
+}
+
 TEST(ExportModel, RefusesAnEnvironmentThatNothingShows) {
   EXPECT_THROW(
       export_model(small_model(), {.to = {ExportTarget::ktx2}, .environment = find_environment("sun")}),
