@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <burnish/capture/capture.h>
+#include <burnish/capture/pictures/capture.h>
 #include <burnish/image/png.h>
 #include <burnish/surface/surface_file.h>
 #include <burnish/testing/tools.h>

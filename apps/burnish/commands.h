@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <burnish/capture/fit_crew.h>
+#include <burnish/capture/ranks/fit_crew.h>
 
 namespace burnish::cli {
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <burnish/capture/virtual_capture.h>
+#include <burnish/capture/pictures/virtual_capture.h>
 #include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/io/csv.h>

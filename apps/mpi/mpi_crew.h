@@ -1,6 +1,6 @@
 #pragma once
 
-#include <burnish/capture/fit_crew.h>
+#include <burnish/capture/ranks/fit_crew.h>
 
 namespace burnish::cli {
 

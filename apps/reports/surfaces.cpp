@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <burnish/capture/virtual_capture.h>
+#include <burnish/capture/pictures/virtual_capture.h>
 #include <burnish/eval/factored_eval.h>
 #include <burnish/eval/spatial_eval.h>
 #include <burnish/file.h>

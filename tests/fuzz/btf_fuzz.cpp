@@ -2,7 +2,7 @@
 
 #include <unistd.h>
 
-#include <burnish/capture/btf_file.h>
+#include <burnish/capture/pictures/btf_file.h>
 
 #include "fuzz_reader.h"
 

@@ -1,4 +1,4 @@
-#include <burnish/capture/capture.h>
+#include <burnish/capture/pictures/capture.h>
 
 #include "fuzz_reader.h"
 

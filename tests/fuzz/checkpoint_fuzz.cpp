@@ -1,4 +1,4 @@
-#include <burnish/capture/fit_checkpoint.h>
+#include <burnish/capture/ranks/fit_checkpoint.h>
 #include <burnish/testing/checkpoints.h>
 
 #include "fuzz_reader.h"

@@ -11,11 +11,11 @@
 #include <hwy/cache_control.h>
 #include <nlohmann/json.hpp>
 
-#include <burnish/capture/fit_checkpoint.h>
-#include <burnish/capture/sampled_texels.h>
-#include <burnish/capture/shared_work.h>
+#include <burnish/capture/ranks/fit_checkpoint.h>
+#include <burnish/capture/ranks/shared_work.h>
 #include <burnish/capture/surface_fit.h>
 #include <burnish/capture/surface_report_json.h>
+#include <burnish/capture/texels/sampled_texels.h>
 #include <burnish/error.h>
 #include <burnish/eval/lobe_evaluator.h>
 #include <burnish/factors/compact_file.h>

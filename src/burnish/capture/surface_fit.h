@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include <burnish/capture/capture.h>
-#include <burnish/capture/fit_crew.h>
-#include <burnish/capture/texel_solver.h>
+#include <burnish/capture/pictures/capture.h>
+#include <burnish/capture/ranks/fit_crew.h>
+#include <burnish/capture/texels/texel_solver.h>
 #include <burnish/surface/surface_file.h>
 
 namespace burnish {

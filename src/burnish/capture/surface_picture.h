@@ -1,6 +1,6 @@
 #pragma once
 
-#include <burnish/capture/capture.h>
+#include <burnish/capture/pictures/capture.h>
 #include <burnish/image/image.h>
 #include <burnish/surface/spatial_brdf.h>
 

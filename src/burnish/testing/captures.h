@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include <burnish/capture/virtual_capture.h>
+#include <burnish/capture/pictures/virtual_capture.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <burnish/capture/fit_checkpoint.h>
+#include <burnish/capture/ranks/fit_checkpoint.h>
 #include <burnish/testing/models.h>
 
 namespace burnish {

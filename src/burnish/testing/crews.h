@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include <burnish/capture/fit_crew.h>
+#include <burnish/capture/ranks/fit_crew.h>
 
 namespace burnish {
 

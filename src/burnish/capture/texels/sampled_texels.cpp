@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include <burnish/capture/sampled_texels.h>
-#include <burnish/capture/shared_work.h>
+#include <burnish/capture/ranks/shared_work.h>
+#include <burnish/capture/texels/sampled_texels.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/k_means.h>
 #include <burnish/math/parallel.h>

@@ -4,9 +4,9 @@
 #include <functional>
 #include <vector>
 
-#include <burnish/capture/capture.h>
-#include <burnish/capture/fit_crew.h>
-#include <burnish/capture/texel_solver.h>
+#include <burnish/capture/pictures/capture.h>
+#include <burnish/capture/ranks/fit_crew.h>
+#include <burnish/capture/texels/texel_solver.h>
 
 namespace burnish {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <burnish/capture/capture.h>
-#include <burnish/capture/texel_solver.h>
+#include <burnish/capture/pictures/capture.h>
+#include <burnish/capture/texels/texel_solver.h>
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/file.h>
 

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
-#include <burnish/capture/capture.h>
-#include <burnish/capture/picture_rows.h>
+#include <burnish/capture/pictures/capture.h>
+#include <burnish/capture/pictures/picture_rows.h>
 #include <burnish/error.h>
 #include <burnish/image/png.h>
 #include <burnish/math/parallel.h>

@@ -7,9 +7,9 @@
 #include <Imath/half.h>
 #include <fmt/format.h>
 
-#include <burnish/capture/btf_file.h>
-#include <burnish/capture/capture.h>
-#include <burnish/capture/file_stamp.h>
+#include <burnish/capture/pictures/btf_file.h>
+#include <burnish/capture/pictures/capture.h>
+#include <burnish/capture/pictures/file_stamp.h>
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <burnish/baselines/node_table.h>
-#include <burnish/capture/picture_rows.h>
+#include <burnish/capture/pictures/picture_rows.h>
 #include <burnish/error.h>
 #include <burnish/image/png.h>
 #include <burnish/math/srgb.h>

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <burnish/capture/texel_table.h>
+#include <burnish/capture/pictures/texel_table.h>
 #include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/io/csv.h>

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include <burnish/capture/capture.h>
+#include <burnish/capture/pictures/capture.h>
 #include <burnish/eval/lobe_evaluator.h>
 #include <burnish/surface/spatial_brdf.h>
 

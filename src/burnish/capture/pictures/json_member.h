@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <burnish/capture/capture.h>
+#include <burnish/capture/pictures/capture.h>
 #include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/math/closest_name.h>

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <burnish/capture/sampled_texels.h>
+#include <burnish/capture/texels/sampled_texels.h>
 #include <burnish/testing/captures.h>
 #include <burnish/testing/crews.h>
 

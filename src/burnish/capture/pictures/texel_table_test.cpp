@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <burnish/capture/capture.h>
+#include <burnish/capture/pictures/capture.h>
 #include <burnish/capture/surface_baselines.h>
 #include <burnish/capture/surface_fit.h>
 #include <burnish/capture/surface_picture.h>

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include <burnish/capture/shared_work.h>
+#include <burnish/capture/ranks/shared_work.h>
 
 namespace burnish {
 

@@ -1,7 +1,7 @@
-#include <burnish/capture/texel_lanes.h>
+#include <burnish/capture/texels/texel_lanes.h>
 #include <burnish/surface/spatial_brdf.h>
 
-#define HWY_TARGET_INCLUDE "burnish/capture/texel_lanes.cpp"
+#define HWY_TARGET_INCLUDE "burnish/capture/texels/texel_lanes.cpp"
 #include <burnish/math/highway-inl.h>
 #include <hwy/contrib/math/math-inl.h>
 

@@ -7,9 +7,9 @@
 #include <Imath/half.h>
 #include <fmt/format.h>
 
-#include <burnish/capture/json_member.h>
-#include <burnish/capture/picture_rows.h>
-#include <burnish/capture/virtual_capture.h>
+#include <burnish/capture/pictures/json_member.h>
+#include <burnish/capture/pictures/picture_rows.h>
+#include <burnish/capture/pictures/virtual_capture.h>
 #include <burnish/error.h>
 #include <burnish/image/png.h>
 #include <burnish/io/open_source.h>

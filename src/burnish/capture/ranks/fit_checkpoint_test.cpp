@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <burnish/capture/fit_checkpoint.h>
+#include <burnish/capture/ranks/fit_checkpoint.h>
 #include <burnish/testing/checkpoints.h>
 #include <burnish/testing/tools.h>
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <burnish/capture/virtual_capture.h>
+#include <burnish/capture/pictures/virtual_capture.h>
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>

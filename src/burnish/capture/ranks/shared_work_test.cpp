@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <burnish/capture/shared_work.h>
+#include <burnish/capture/ranks/shared_work.h>
 #include <burnish/math/random.h>
 #include <burnish/testing/crews.h>
 #include <burnish/testing/directions.h>

@@ -1,7 +1,7 @@
 #include <cstring>
 #include <limits>
 
-#include <burnish/capture/fit_checkpoint.h>
+#include <burnish/capture/ranks/fit_checkpoint.h>
 #include <burnish/factors/cbor.h>
 #include <burnish/factors/compact_file.h>
 

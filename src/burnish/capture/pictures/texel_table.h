@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <burnish/capture/capture.h>
+#include <burnish/capture/pictures/capture.h>
 
 namespace burnish {
 

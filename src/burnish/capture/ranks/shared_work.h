@@ -8,8 +8,8 @@
 #include <type_traits>
 #include <vector>
 
-#include <burnish/capture/fit_crew.h>
-#include <burnish/capture/texel_solver.h>
+#include <burnish/capture/ranks/fit_crew.h>
+#include <burnish/capture/texels/texel_solver.h>
 
 namespace burnish {
 

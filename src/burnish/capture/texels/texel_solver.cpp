@@ -4,8 +4,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include <burnish/capture/texel_lanes.h>
-#include <burnish/capture/texel_solver.h>
+#include <burnish/capture/texels/texel_lanes.h>
+#include <burnish/capture/texels/texel_solver.h>
 #include <burnish/math/parallel.h>
 
 namespace burnish {

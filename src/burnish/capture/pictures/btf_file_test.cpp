@@ -5,9 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <burnish/capture/btf_file.h>
-#include <burnish/capture/capture.h>
-#include <burnish/capture/picture_rows.h>
+#include <burnish/capture/pictures/btf_file.h>
+#include <burnish/capture/pictures/capture.h>
+#include <burnish/capture/pictures/picture_rows.h>
 #include <burnish/capture/surface_fit.h>
 #include <burnish/error.h>
 #include <burnish/math/angles.h>

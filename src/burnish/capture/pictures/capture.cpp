@@ -5,12 +5,12 @@
 
 #include <fmt/format.h>
 
-#include <burnish/capture/btf_file.h>
-#include <burnish/capture/capture.h>
-#include <burnish/capture/file_stamp.h>
-#include <burnish/capture/json_member.h>
-#include <burnish/capture/picture_rows.h>
-#include <burnish/capture/texel_table.h>
+#include <burnish/capture/pictures/btf_file.h>
+#include <burnish/capture/pictures/capture.h>
+#include <burnish/capture/pictures/file_stamp.h>
+#include <burnish/capture/pictures/json_member.h>
+#include <burnish/capture/pictures/picture_rows.h>
+#include <burnish/capture/pictures/texel_table.h>
 #include <burnish/error.h>
 #include <burnish/math/parallel.h>
 

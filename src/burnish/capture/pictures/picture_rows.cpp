@@ -16,7 +16,7 @@
 #include <fmt/format.h>
 #include <png.h>
 
-#include <burnish/capture/picture_rows.h>
+#include <burnish/capture/pictures/picture_rows.h>
 #include <burnish/error.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/file.h>
