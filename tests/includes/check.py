@@ -4,6 +4,7 @@
 - A foundation includes only what stands before it in FOUNDATIONS.
 - A worker includes foundations, and another worker only where ALLOWED says so.
 - What is allowed is used, so that the table stays as short as it can be.
+- A house (a folder within a folder) that HOUSES names includes of its own folder only itself and houses before it.
 - burnish.h is the public door: its headers, and what they include, name no header of another library.
 
 Tests, benchmarks and testing/ include what they like; nothing else includes them. Prints what is wrong as
@@ -32,6 +33,8 @@ ALLOWED = {
     "library": ["io", "fitting", "export"],
     "capture": ["eval", "fitting", "io", "render"],
 }
+# Houses of a folder, each of which may include those before it. What stands beside the houses may include all of them.
+HOUSES = {"capture": ["pictures", "texels", "ranks"]}
 DOOR = "burnish.h"
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 # Of the C and C++ libraries: no folder, no suffix.
@@ -62,6 +65,21 @@ def includes_of(text):
             yield name, quote == '"'
 
 
+def wrong_house(source, target):
+    """Why a file may not include another of its own folder, or nothing."""
+    houses = HOUSES.get(home(source))
+    if not houses:
+        return None
+    inside, outside = (name.split("/")[1] for name in (source, target))
+    if inside not in houses:
+        return None
+    if outside not in houses:
+        return f"includes {target}, which stands over the houses"
+    if houses.index(outside) > houses.index(inside):
+        return f"includes {target}: upward, from {inside} to {outside}"
+    return None
+
+
 def wrong_edge(source, target):
     """Why the file source may not include the file target, or nothing."""
     inside, outside = home(source), home(target)
@@ -70,7 +88,7 @@ def wrong_edge(source, target):
     if target == DOOR:
         return f"includes {DOOR}, which is for programs"
     if inside == outside:
-        return None
+        return wrong_house(source, target)
     if outside in ALLOWED:
         if inside in ALLOWED and outside in ALLOWED[inside]:
             return None
@@ -136,6 +154,9 @@ def self_test(tree):
         ("factors/table.cpp", "<burnish/fitting/fit.h>", "factors may not include fitting"),
         ("eval/factored_eval.cpp", "<burnish/shaders/shader.h>", "eval may not include shaders"),
         ("shaders/shader.h", "<burnish/render/scene.h>", "shaders may not include render"),
+        ("capture/pictures/capture.h", "<burnish/capture/texels/texel_lanes.h>", "upward, from pictures to texels"),
+        ("capture/texels/texel_solver.cpp", "<burnish/capture/ranks/fit_crew.h>", "upward, from texels to ranks"),
+        ("capture/ranks/fit_crew.h", "<burnish/capture/surface_fit.h>", "which stands over the houses"),
         ("io/csv.cpp", "<burnish/testing/files.h>", "which serves tests"),
         ("fitting/fit.h", "<Eigen/Core>", "is public (through burnish.h) and includes Eigen/Core"),
         ("factors/table.h", "<nlohmann/json_fwd.hpp>", "includes nlohmann/json_fwd.hpp of another library"),

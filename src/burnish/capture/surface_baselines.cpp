@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include <burnish/capture/ranks/sampled_texels.h>
 #include <burnish/capture/surface_baselines.h>
-#include <burnish/capture/texels/sampled_texels.h>
 #include <burnish/fitting/numerics/eigenvectors.h>
 #include <burnish/math/angles.h>
 

@@ -12,10 +12,11 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/capture/ranks/fit_checkpoint.h>
+#include <burnish/capture/ranks/sampled_texels.h>
 #include <burnish/capture/ranks/shared_work.h>
 #include <burnish/capture/surface_fit.h>
 #include <burnish/capture/surface_report_json.h>
-#include <burnish/capture/texels/sampled_texels.h>
+#include <burnish/capture/texels/texel_starts.h>
 #include <burnish/error.h>
 #include <burnish/eval/lobe_evaluator.h>
 #include <burnish/factors/compact_file.h>

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <burnish/capture/texels/sampled_texels.h>
 #include <burnish/capture/texels/texel_lanes.h>
 #include <burnish/capture/texels/texel_solver.h>
+#include <burnish/capture/texels/texel_starts.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
