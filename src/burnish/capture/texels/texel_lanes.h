@@ -70,7 +70,7 @@ void find_normal_equations(const TexelPictures& pictures, const TexelPass& pass,
 /// mean diagonal and 1e-30 added, by block principal pivoting [PortugalJudiceVicente1994]: what is below 0 is fixed at
 /// 0, what would rise from there is set free, all at once. Begins with those free that are > 0, or unless `near` with
 /// all. Returns bits of the texels that it ended for, with weights below 1e30; those of others, and of equations that
-/// are not finite, are as they were: solve_nonnegative (texel_solver.h) finds them.
+/// are not finite, are as they were: solve_nonnegative (nonnegative.h) finds them.
 std::uint32_t find_weights(std::size_t lobes, const TexelRow* matrix, const TexelRow* vector, double ridge,
                            bool near, TexelRow* weights) noexcept;
 

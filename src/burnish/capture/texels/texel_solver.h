@@ -1,47 +1,16 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include <burnish/capture/pictures/capture.h>
+#include <burnish/capture/texels/texel_samples.h>
 #include <burnish/eval/lobe_evaluator.h>
 #include <burnish/surface/spatial_brdf.h>
 
 namespace burnish {
-
-/// The w >= 0 with the least w^T A w / 2 - b^T w, A symmetric and positive definite, by the active-set method of
-/// Lawson and Hanson on the normal equations [LawsonHanson1974]. A row by row, of b.size() unknowns, at most
-/// kMaxSurfaceLobes. Begins at 0, or where `near` at the w given, finite and >= 0, which ends soonest where the same
-/// unknowns stay 0. Ends after 3 unknowns changes of the active set at most. What is not finite gives zeros.
-void solve_nonnegative(std::span<const double> a, std::span<const double> b, std::span<double> w,
-                       bool near = false) noexcept;
-
-/// Some texels in every picture of a capture.
-struct TexelSamples {
-  std::vector<std::array<int, 2>> texels;  ///< x, y
-  std::size_t pictures = 0;
-  std::vector<float> values;       ///< f cos(theta_i), [picture][texel][channel], three channels
-  std::vector<PixelState> states;  ///< [picture][texel]
-  /// Unit vectors towards light and view, [picture][texel][6]; empty: as the form's stations say.
-  std::vector<float> directions = {};
-
-  std::size_t size() const noexcept { return texels.size(); }
-  /// Unit vectors towards light and view from texel t, whose middle is `point`.
-  DirectionPair seen(const CapturePicture& picture, std::size_t p, std::size_t t, Vec3 point) const noexcept {
-    if (directions.empty()) return {picture.light.seen_from(point), picture.view.seen_from(point)};
-    const float* const w = &directions[6 * (p * size() + t)];
-    return {{w[0], w[1], w[2]}, {w[3], w[4], w[5]}};
-  }
-};
-
-/// The same of all texels of some rows.
-TexelSamples samples_of(CaptureRows rows);
-/// Every step-th texel from the first on.
-TexelSamples every(const TexelSamples& all, std::size_t step);
 
 /// What is known of texels, or found.
 struct TexelFits {
@@ -104,8 +73,6 @@ class TexelSolver {
   std::size_t lobes() const noexcept { return evaluator_.lobes(); }
 
  private:
-  class Block;
-
   LobeEvaluator evaluator_;
   const CaptureForm& form_;
   double exposure_;

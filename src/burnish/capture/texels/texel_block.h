@@ -1,0 +1,131 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <burnish/capture/pictures/capture.h>
+#include <burnish/capture/texels/texel_lanes.h>
+#include <burnish/capture/texels/texel_samples.h>
+#include <burnish/eval/lobe_evaluator.h>
+#include <burnish/surface/spatial_brdf.h>
+
+namespace burnish {
+
+/// What a capture's form and the lobes are to the texels of a block. All of it outlives the block.
+struct TexelSetting {
+  const LobeEvaluator& lobes;
+  const CaptureForm& form;
+  const TexelSamples& samples;
+  float exposure;
+};
+
+/// Which texels a block has: at most kTexelLanes, from the first on. Lanes beyond the last repeat it.
+struct TexelRange {
+  std::size_t first = 0, count = 0;
+
+  std::size_t texel(std::size_t lane) const noexcept { return first + std::min(lane, count - 1); }
+};
+
+/// What lobes of weight 1 give at texels side by side, and room for what is computed on the way.
+class LobeRows {
+ public:
+  /// Of some pictures, by their numbers in the form.
+  LobeRows(const TexelSetting& setting, std::span<const std::size_t> pictures);
+
+  /// f cos(theta_i), rows [picture][lobe][channel], under normals (x and y of all samples' texels, [texel][2]) that are
+  /// moved by (dx, dy); flat where `normals` is null.
+  void find(const TexelRange& range, const float* normals, float dx, float dy, std::span<float> to);
+
+  std::size_t rows() const noexcept { return setting_.lobes.lobes() * kCaptureChannels; }  ///< of a picture
+
+ private:
+  static constexpr std::size_t kTogether = 4;  // pictures that lobes are evaluated for
+
+  void find_frames(const TexelRange& range, const float* normals, float dx, float dy);
+  void find_directions(const TexelRange& range, std::size_t picture, std::size_t first);
+  void find_towards(const Station& station);
+
+  TexelSetting setting_;
+  std::span<const std::size_t> pictures_;
+  TexelFrames frames_;
+  std::array<TexelRow, 3> points_, towards_;
+  std::array<std::array<float, kTogether * kTexelLanes>, 6> local_;  // light and view in the texels' frames
+  std::vector<float> lobe_values_;
+};
+
+/// Texels side by side whose weights are fitted: what was measured of them, what the lobes give, and the equations of a
+/// pass. Valid after begin(), which may be called again for other texels of the same samples.
+class TexelBlock {
+ public:
+  static constexpr int kLastPass = 2;  ///< passes from this on trust pixels least
+
+  /// Of the pictures that are held out, or those that are not.
+  TexelBlock(const TexelSetting& setting, bool held_out);
+  TexelBlock(const TexelBlock&) = delete;  // lobe_rows_ looks at pictures_
+  TexelBlock& operator=(const TexelBlock&) = delete;
+
+  /// Takes up other texels, all of whose pixels are trusted. Weights stay as they were.
+  void begin(const TexelRange& range, const float* normals);
+  void load_weights(const float* weights);  ///< [texel][lobe] of all samples' texels
+
+  /// Finds what the lobes give under other normals; a pass goes by it.
+  void see(const float* normals) { lobe_rows_.find(range_, normals, 0, 0, model_); }
+  /// The same under normals that are moved, into floats of the caller's: as many as model() has.
+  void see_moved(const float* normals, float dx, float dy, std::span<float> to) {
+    lobe_rows_.find(range_, normals, dx, dy, to);
+  }
+
+  /// The normal equations of a pass, and the trust that it has in pixels.
+  void find_equations(int pass);
+  /// Least squares for the weights, each pass trusting pixels by the errors that the one before left.
+  void fit_weights(int passes, int first_pass);
+
+  /// One picture and channel as a pass counts it. omega: see find_omega, of the mean of measured and modelled value,
+  /// in pass 0 of the measured one; 0 of what does not count.
+  struct Terms {
+    TexelRow value, model, omega;
+  };
+  Terms terms_of(std::size_t picture, std::size_t channel, int pass) const;
+  /// What is left of the errors of each texel's pixels, as weights count it.
+  std::array<double, kTexelLanes> costs() const;
+
+  const TexelRange& range() const noexcept { return range_; }
+  std::size_t lobes() const noexcept { return lobes_; }
+  std::span<const std::size_t> pictures() const noexcept { return pictures_; }
+  std::span<const float> model() const noexcept { return model_; }       ///< [picture][lobe][channel][lane]
+  std::span<TexelRow> weights() noexcept { return weights_; }            ///< [lobe]
+  std::span<const TexelRow> matrix() const noexcept { return matrix_; }  ///< lower triangles, row by row
+  float trust(std::size_t k, std::size_t i) const noexcept { return trust_[k * kTexelLanes + i]; }
+  const TexelRow& measured(std::size_t k, std::size_t c) const noexcept {
+    return values_[k * kCaptureChannels + c];
+  }
+  /// The model's f cos(theta_i) of one picture and channel.
+  TexelRow modelled(std::size_t k, std::size_t c) const noexcept;
+  /// Where the samples have a pixel.
+  std::size_t pixel(std::size_t k, std::size_t i) const noexcept {
+    return pictures_[k] * setting_.samples.size() + range_.texel(i);
+  }
+
+ private:
+  void load();
+  void load_states(std::size_t k);
+  void solve_one_by_one(std::size_t i, bool near);
+
+  TexelSetting setting_;
+  std::size_t lobes_;
+  std::vector<std::size_t> pictures_;
+  LobeRows lobe_rows_;
+  TexelRange range_;
+  bool seen_ = false;  // whether the model is that of some texels
+  std::vector<float> model_, trust_;
+  std::vector<TexelRow> weights_, values_, there_, clipped_;
+  bool any_clipped_ = false;
+  std::vector<std::array<PixelState, kTexelLanes>> states_;
+  std::array<TexelRow, kMaxSurfaceLobes*(kMaxSurfaceLobes + 1) / 2> matrix_;
+  std::array<TexelRow, kMaxSurfaceLobes> vector_;
+};
+
+}  // namespace burnish
