@@ -19,6 +19,7 @@ void turn_all(const TexelFrames& frames, const std::array<TexelRow, 3>& towards,
     auto x = hn::LoadU(d, towards[0].data() + i), y = hn::LoadU(d, towards[1].data() + i),
          z = hn::LoadU(d, towards[2].data() + i);
     if (any_length) {
+      // The vector is divided by its length; one that is too short to have a direction becomes (0, 0, 1).
       const auto square = hn::MulAdd(z, z, hn::MulAdd(y, y, hn::Mul(x, x)));
       const auto inverse = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(square));
       const auto far = hn::Ge(square, hn::Set(d, kLeastSquare));
@@ -26,6 +27,7 @@ void turn_all(const TexelFrames& frames, const std::array<TexelRow, 3>& towards,
       y = hn::IfThenElseZero(far, hn::Mul(y, inverse));
       z = hn::IfThenElse(far, hn::Mul(z, inverse), hn::Set(d, 1.0f));
     }
+    // Along each axis of the frame it has their dot product.
     for (std::size_t r = 0; r < 3; ++r) {
       const TexelRow* const axis = &frames[3 * r];
       const auto along = hn::MulAdd(
@@ -43,6 +45,7 @@ void multiply_rows(std::size_t rows, const float* f, std::size_t plane, const fl
   for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
     const auto factor = hn::LoadU(d, cosine + i);
     for (std::size_t r = 0; r < rows; ++r) {
+      // The comparison is false for not-a-number, which so stays; Min would lose it.
       const auto value = hn::Mul(hn::LoadU(d, f + r * plane + i), factor);
       hn::StoreU(hn::IfThenElse(hn::Gt(value, limit), limit, value), d, product + r * kTexelLanes + i);
     }
@@ -63,6 +66,7 @@ void values_apart(const float* values, TexelRow* rows) {
 void sum_all(const TexelPixels& pixels, const TexelRow* weights, float* total) {
   const D d;
   for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
+    // The model is the sum of its lobes, each times the texel's weight.
     auto sum = hn::Zero(d);
     for (std::size_t j = 0; j < pixels.lobes; ++j)
       sum = hn::MulAdd(hn::LoadU(d, weights[j].data() + i),
@@ -76,6 +80,7 @@ void omega_of(float exposure, float floor, const float* at, const float* share, 
   const auto one = hn::Set(d, 1.0f), e = hn::Set(d, exposure),
              scale = hn::Set(d, 0.25f * exposure * exposure);
   for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
+    // (d x^(1/2) / d value)^2 = e^2 / (4 x) up to 1; beyond it e^2 / (4 x^3), which meets it there.
     const auto x = hn::Max(hn::Mul(e, hn::LoadU(d, at + i)), hn::Set(d, floor));
     const auto under = hn::Mul(x, hn::Max(one, hn::Mul(x, x)));
     hn::StoreU(hn::Div(hn::Mul(scale, hn::LoadU(d, share + i)), under), d, omega + i);
@@ -105,19 +110,21 @@ void equations_of(const TexelPictures& pictures, const TexelPass& pass, const Te
       const float* const model = pictures.model + k * lobes * stride + i;
       const float* const values = pictures.value + k * stride + i;
       const auto there = hn::LoadU(d, pictures.there + k * kTexelLanes + i);
-      // how the channels count
+      // Each channel counts by omega, as find_omega says, and the pixel is doubted by its worst channel.
       V omega[kChannels];
       auto worst = zero;
       for (std::size_t c = 0; c < pictures.channels; ++c) {
         const auto value = hn::LoadU(d, values + c * kTexelLanes);
         auto at = value, share = there, rest = zero;
         if (!pass.of_measured) {
+          // Omega is taken midway between what was measured and what the weights of the pass before give.
           auto total = zero;
           for (std::size_t j = 0; j < lobes; ++j)
             total = hn::MulAdd(weight[j], hn::LoadU(d, model + j * stride + c * kTexelLanes), total);
           at = hn::Mul(half, hn::Add(value, total));
           rest = hn::Sub(value, total);
           if (pictures.clipped) {
+            // A clipped value is a lower bound: it does not count where the model is above it.
             const auto clipped = hn::LoadU(d, pictures.clipped + k * stride + c * kTexelLanes + i);
             share = hn::IfThenElse(hn::And(hn::Gt(clipped, zero), hn::Gt(total, value)), zero, share);
           }
@@ -125,16 +132,18 @@ void equations_of(const TexelPictures& pictures, const TexelPass& pass, const Te
         const auto x = hn::Max(hn::Mul(exposure, at), floor);
         omega[c] = hn::Div(hn::Mul(scale, share), hn::Mul(x, hn::Max(one, hn::Mul(x, x))));
         if (pass.of_measured) continue;
+        // What is brighter than the model is doubted less than what is darker, as shadows are.
         const auto counts = hn::IfThenElse(hn::Lt(rest, zero), one, brighter);
         worst = hn::Max(worst, hn::Mul(hn::Mul(hn::Mul(counts, omega[c]), rest), rest));
       }
       auto trusted = one;
       if (!pass.of_measured) {
+        // The weight of a robust loss: 1 / (1 + e / reach^2)^2 of the squared error e [GemanMcClure1987].
         const auto doubt = hn::Add(one, hn::Div(worst, square_reach));
         trusted = hn::IfThenElse(hn::Gt(there, zero), hn::Div(one, hn::Mul(doubt, doubt)), zero);
         hn::StoreU(trusted, d, trust + k * kTexelLanes + i);
       }
-      // the sums
+      // The matrix gains omega times products of two lobes, the right side omega times a lobe and the value.
       for (std::size_t c = 0; c < pictures.channels; ++c) {
         const auto value = hn::LoadU(d, values + c * kTexelLanes), counts = hn::Mul(omega[c], trusted);
         std::size_t at = 0;
@@ -185,6 +194,8 @@ struct TexelUnknowns {
     const D64 d;
     const V one = hn::Set(d, 1.0), least = hn::Set(d, kMinSquare);
     V factor[kMax][kMax], inverse[kMax];
+    // The matrix is L L^T: each row of L is found, and at once what L y = b has for it. An unknown that is not free
+    // has a row of the identity and 0 on the right, so that lanes with other free unknowns take the same way.
     for (std::size_t r = 0; r < n; ++r) {
       V rest = hn::IfThenElseZero(free[r], b[r]);
       for (std::size_t c = 0; c < r; ++c) {
@@ -198,6 +209,7 @@ struct TexelUnknowns {
       inverse[r] = hn::Div(one, hn::Sqrt(hn::Max(square, least)));
       solution[r] = hn::Mul(rest, inverse[r]);
     }
+    // Then L^T x = y is solved from the last unknown to the first.
     for (std::size_t r = n; r-- > 0;) {
       V rest = solution[r];
       for (std::size_t k = r + 1; k < n; ++k) rest = hn::NegMulAdd(factor[k][r], solution[k], rest);
@@ -212,10 +224,13 @@ struct TexelUnknowns {
     const V zero = hn::Zero(d);
     M good = hn::Eq(zero, zero);
     for (std::size_t r = 0; r < n; ++r) {
+      // How fast the sum falls where this unknown grows: b - A w.
       V slope = b[r];
       for (std::size_t c = 0; c < n; ++c) slope = hn::NegMulAdd(matrix(r, c), solution[c], slope);
+      // Karush, Kuhn and Tucker's conditions: a free unknown is positive, and for one at 0 the sum does not fall.
       const M level = hn::Le(slope, hn::Mul(hn::Set(d, kMinSlope), hn::Abs(b[r])));
       const M stays = hn::Or(hn::And(free[r], hn::Gt(solution[r], zero)), hn::AndNot(free[r], level));
+      // Whatever breaks its condition changes sides, all at once [PortugalJudiceVicente1994].
       free[r] = hn::Xor(free[r], hn::Not(stays));
       good = hn::And(good, hn::And(stays, hn::Lt(solution[r], hn::Set(d, most))));
     }
@@ -233,7 +248,7 @@ std::uint32_t weights_of(std::size_t lobes, const TexelRow* matrix, const TexelR
   std::uint32_t found = 0;
   TexelUnknowns unknowns{.n = lobes};
   for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
-    // the equations
+    // The equations of each texel are taken in double: their squares span more than floats resolve.
     V trace = hn::Zero(d), weight[TexelUnknowns::kMax];
     for (std::size_t r = 0, at = 0; r < lobes; ++r) {
       for (std::size_t c = 0; c <= r; ++c, ++at)
@@ -243,13 +258,14 @@ std::uint32_t weights_of(std::size_t lobes, const TexelRow* matrix, const TexelR
       trace = hn::Add(trace, unknowns.a[r][r]);
       unknowns.free[r] = near ? hn::Gt(weight[r], hn::Zero(d)) : hn::Eq(hn::Zero(d), hn::Zero(d));
     }
+    // A ridge in proportion to the mean diagonal tells lobes apart that are alike.
     const V added = hn::MulAdd(hn::Set(d, ridge / static_cast<double>(lobes)), trace, hn::Set(d, 1e-30));
     for (std::size_t r = 0; r < lobes; ++r) unknowns.a[r][r] = hn::Add(unknowns.a[r][r], added);
-    // what is not finite in one number is not in this
+    // The trace, with 0 times each right side added, is finite where the diagonal and all of these are.
     V together = trace;
     for (std::size_t r = 0; r < lobes; ++r) together = hn::MulAdd(hn::Zero(d), unknowns.b[r], together);
     const auto sound = hn::IsFinite(together);
-    // turns, until all texels are done
+    // Turns go on until all texels are done. A texel keeps the weights of the turn that was its last.
     auto done = hn::Not(sound);
     for (int turn = 0; turn < kTurns && !hn::AllTrue(d, done); ++turn) {
       unknowns.solve_free();
@@ -258,6 +274,7 @@ std::uint32_t weights_of(std::size_t lobes, const TexelRow* matrix, const TexelR
         weight[r] = hn::IfThenElse(hn::AndNot(done, good), unknowns.solution[r], weight[r]);
       done = hn::Or(done, good);
     }
+    // Weights of texels that are not done are stored as they were; a bit each says which are.
     for (std::size_t r = 0; r < lobes; ++r)
       hn::StoreU(hn::DemoteTo(d32, weight[r]), d32, weights[r].data() + i);
     std::uint8_t bits[8] = {};
@@ -272,6 +289,7 @@ void seen_of(float exposure, const float* value, float* seen) {
   constexpr float kGrey = 1 / 2.2f, kMin = 1e-30f;
   const auto one = hn::Set(d, 1.0f), least = hn::Set(d, kMin), e = hn::Set(d, exposure);
   for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
+    // x^(1/2.2) = exp(log(x) / 2.2), of an x that has a logarithm; 0 below that.
     const auto x = hn::Min(hn::Mul(e, hn::LoadU(d, value + i)), one);
     const auto root = hn::Exp(d, hn::Mul(hn::Set(d, kGrey), hn::Log(d, hn::Max(x, least))));
     hn::StoreU(hn::IfThenElse(hn::Gt(x, least), root, hn::Zero(d)), d, seen + i);
