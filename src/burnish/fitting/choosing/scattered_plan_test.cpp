@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <burnish/factors/byte_count.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/choosing/backscatter.h>
 #include <burnish/fitting/choosing/scattered_forms.h>
