@@ -151,7 +151,7 @@ std::vector<float> read_finite(ByteReader& reader, std::uint64_t count, const ch
   const std::uint64_t start = reader.offset();
   const auto bytes = reader.take(count * sizeof(float), what);
   std::vector<float> values(count);
-  std::memcpy(values.data(), bytes.data(), bytes.size());
+  if (count > 0) std::memcpy(values.data(), bytes.data(), bytes.size());
   const auto wrong = std::ranges::find_if(values, [](float v) { return !std::isfinite(v); });
   if (wrong != values.end()) {
     reader.seek(start + static_cast<std::uint64_t>(wrong - values.begin()) * sizeof(float));

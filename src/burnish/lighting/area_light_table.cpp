@@ -65,7 +65,8 @@ ShadedLobes shaded_lobes(const AreaLightTable& table, Vec3 wo) noexcept {
 Rgb reflected_density(const AreaLightTable& table, Vec3 wi, Vec3 wo) noexcept {
   Rgb sum;
   if (wi.z <= 0 || wo.z <= 0) return sum;
-  for (const ShadedLobe& lobe : shaded_lobes(table, wo).all())
+  const auto shaded = shaded_lobes(table, wo);  // the loop refers to it
+  for (const ShadedLobe& lobe : shaded.all())
     sum = sum + Rgb(lobe.shape.density(wi)) * lobe.amplitude;
   return sum;
 }
@@ -73,7 +74,8 @@ Rgb reflected_density(const AreaLightTable& table, Vec3 wi, Vec3 wo) noexcept {
 Rgb albedo(const AreaLightTable& table, Vec3 wo) noexcept {
   Rgb sum;
   if (wo.z <= 0) return sum;
-  for (const ShadedLobe& lobe : shaded_lobes(table, wo).all())
+  const auto shaded = shaded_lobes(table, wo);  // the loop refers to it
+  for (const ShadedLobe& lobe : shaded.all())
     sum = sum + Rgb(lobe.shape.share_above()) * lobe.amplitude;
   return sum;
 }
@@ -81,7 +83,8 @@ Rgb albedo(const AreaLightTable& table, Vec3 wo) noexcept {
 Rgb reflected(const AreaLightTable& table, std::span<const Vec3> polygon, Vec3 wo) {
   Rgb sum;
   if (wo.z <= 0) return sum;
-  for (const ShadedLobe& lobe : shaded_lobes(table, wo).all())
+  const auto shaded = shaded_lobes(table, wo);  // the loop refers to it
+  for (const ShadedLobe& lobe : shaded.all())
     sum = sum + Rgb(lobe_share(lobe.shape, polygon)) * lobe.amplitude;
   return sum;
 }
