@@ -1,6 +1,8 @@
-// What the library has and no page asks for: surfaces as OpenEXR, and maps in blocks.
+// What the library has and no page asks for: surfaces as OpenEXR, maps in blocks, and area lights.
 #include <burnish/error.h>
 #include <burnish/image/block_compression.h>
+#include <burnish/lighting/area_light_fit.h>
+#include <burnish/lighting/area_light_shader.h>
 #include <burnish/surface/surface_exr.h>
 
 namespace burnish {
@@ -24,6 +26,14 @@ std::vector<std::byte> encode_bc5(int, int, std::span<const float>, bool) {
 
 std::vector<float> decode_bc5(int, int, std::span<const std::byte>, bool) {
   throw Error("blocks: expected maps of single texels in a page, found blocks");
+}
+
+AreaLightTable fit_area_lights(BrdfRef, const AreaLightFitOptions&) {
+  throw Error("export: expected no area lights in a page, found some");
+}
+
+AreaLightShader generate_shader(const AreaLightTable&, ShaderLanguage, const std::string&) {
+  throw Error("shader: expected no area lights in a page, found some");
 }
 
 }  // namespace burnish

@@ -88,7 +88,7 @@ class Surprises {
     return squares_[i] > kMost * around[around.size() / 2] / kMedianSquare;
   }
 
-  /// Whether the others stand on all sides. What rises towards the horizon or the mirror direction, where measurements
+  /// Returns true if the others stand on all sides. A rise towards the horizon or the mirror direction, where measurements
   /// end, differs from all that was measured before it.
   bool is_surrounded(std::size_t i, std::span<const KdTree::Neighbour> near) const {
     const auto count = [&](const auto& is_beyond) {
@@ -99,11 +99,11 @@ class Surprises {
            count([&](std::size_t k) { return cosine_of_h_[k] > cosine_of_h_[i]; }) >= kNearerMirror;
   }
 
-  /// Whether it is larger, or smaller, than all the others: on the slope of a highlight a value is neither.
+  /// Returns true if it is larger, or smaller, than all the others: on the slope of a highlight a value is neither.
   bool is_extreme(std::size_t i, std::span<const KdTree::Neighbour> near) const {
-    const auto [least, most] =
-        std::ranges::minmax(near, {}, [&](const KdTree::Neighbour& one) { return sum_[one.place]; });
-    return sum_[i] < sum_[least.place] || sum_[i] > sum_[most.place];
+    const double own = sum_[i];
+    return std::ranges::none_of(near, [&](const auto& one) { return sum_[one.place] <= own; }) ||
+           std::ranges::none_of(near, [&](const auto& one) { return sum_[one.place] >= own; });
   }
 
   bool is_worst_nearby(std::size_t i) const {
