@@ -30,23 +30,26 @@ double mean_size(double mean, double sigma) noexcept {
 }  // namespace
 
 ExpectedError expected_error(const KrigedNodes& function, BrdfRef model) {
-  const std::size_t channels = function.channels();
-  if (model.channels() != channels)
+  const std::size_t of_function = function.channels(), of_model = model.channels();
+  if (of_model != of_function && of_model != 1 && of_function != 1)
     throw Error(
-        fmt::format("expected error: expected a model of {} channels, found {}", channels, model.channels()));
+        fmt::format("expected error: expected a model of {} or 1 channels, found {}", of_function, of_model));
+  const std::size_t channels = std::max(of_function, of_model);
   const std::vector<DirectionPair> pairs = draw_pairs(kExpectedPairs, kExpectedSeed, function.isotropic());
   std::vector<double> errors(pairs.size(), -1);
   for_each_chunk(pairs.size(), kExpectedTogether, [&](std::size_t, std::size_t begin, std::size_t end) {
-    std::vector<double> f(channels), g(channels);
+    std::vector<double> f(of_function), g(of_model);
     for (std::size_t i = begin; i < end; ++i) {
       const auto [wi, wo] = pairs[i];
       if (!(std::min(wi.z, wo.z) > NodeScoring{}.least_cosine) || !model.eval(wi, wo, g)) continue;
       function.eval(wi, wo, f);
       const double sigma = function.uncertainty(wi, wo).function;
       double sum = 0;
-      for (std::size_t c = 0; c < channels; ++c)
-        sum += mean_size(std::log((f[c] + KrigedNodes::kFloor) / (std::max(0.0, g[c]) + KrigedNodes::kFloor)),
-                         sigma);
+      for (std::size_t c = 0; c < channels; ++c) {
+        // One channel serves for each of the other side's.
+        const double own = f[of_function == 1 ? 0 : c], its = std::max(0.0, g[of_model == 1 ? 0 : c]);
+        sum += mean_size(std::log((own + KrigedNodes::kFloor) / (its + KrigedNodes::kFloor)), sigma);
+      }
       errors[i] = sum / static_cast<double>(channels);
     }
   });

@@ -24,7 +24,8 @@ struct ExpectedError {
   std::array<std::optional<double>, 6> by_theta_i;
 };
 
-/// Throws Error if the model's channels are not as many as the function's.
+/// Returns the expected error of a model. One channel serves for each of the other side's. Throws Error if both have
+/// several channels, and not as many.
 ExpectedError expected_error(const KrigedNodes& function, BrdfRef model);
 
 }  // namespace burnish

@@ -62,10 +62,13 @@ TEST(ExpectedError, GrowsWhereNothingWasMeasured) {
   EXPECT_GT(*expected.by_theta_i[4], 3 * *expected.by_theta_i[0]);
 }
 
-TEST(ExpectedError, RefusesOtherChannels) {
-  const fixtures::Glossy source, grey{.count = 1};
-  const KrigedNodes function = kriged_from(source, 50, 0);
-  EXPECT_THROW(expected_error(function, grey), Error);
+TEST(ExpectedError, TakesOneChannelForEachOfTheOthers) {
+  const fixtures::Glossy source, grey{.count = 1}, two{.count = 2};
+  const KrigedNodes function = kriged_from(source, 50, 0), of_grey = kriged_from(grey, 50, 0);
+  const double equal = expected_error(function, source).relative;
+  EXPECT_NE(expected_error(function, grey).relative, equal);  // the channels of the source differ
+  EXPECT_GT(expected_error(of_grey, source).relative, expected_error(of_grey, grey).relative);
+  EXPECT_THROW(expected_error(function, two), Error);
 }
 
 }  // namespace
