@@ -16,9 +16,11 @@ echo "== Factoring $input"
 echo "== Rendering it"
 "$burnish" render --renderer cpu --mesh torus-knot --material "$out/model.exr" --size 480 -o "$out/knot.png"
 echo "== Comparing with $reference"
-"$burnish" compare "$reference" "$out/model.exr" -o "$out/report" | tee "$out/figures.txt"
+"$burnish" compare "$reference" "$out/model.exr" -o "$out/report"
 echo
 echo "The model:    $out/model.exr (any EXR viewer shows its textures)"
 echo "The pictures: $out/knot.png, $out/report/index.html, $out/report/overview.png"
-awk 'NR == 2 {printf "The error:    psnr %s dB, ssim %s, relative %s, in %s bytes\n", $(NF-4), $(NF-3), $(NF-2), $(NF-5)}' \
-  "$out/figures.txt"
+# The first model's members of the report, by name.
+awk -F '[ ":,]+' '!($2 in value) {value[$2] = $3}
+  END {printf "The error:    psnr %.2f dB, ssim %.4f, relative %.4f, in %d bytes\n", value["psnr"], value["ssim"],
+         value["relative"], value["bytes"]}' "$out/report/report.json"
