@@ -66,8 +66,7 @@ Rgb reflected_density(const AreaLightTable& table, Vec3 wi, Vec3 wo) noexcept {
   Rgb sum;
   if (wi.z <= 0 || wo.z <= 0) return sum;
   const auto shaded = shaded_lobes(table, wo);  // the loop refers to it
-  for (const ShadedLobe& lobe : shaded.all())
-    sum = sum + Rgb(lobe.shape.density(wi)) * lobe.amplitude;
+  for (const ShadedLobe& lobe : shaded.all()) sum = sum + Rgb(lobe.shape.density(wi)) * lobe.amplitude;
   return sum;
 }
 
@@ -75,8 +74,7 @@ Rgb albedo(const AreaLightTable& table, Vec3 wo) noexcept {
   Rgb sum;
   if (wo.z <= 0) return sum;
   const auto shaded = shaded_lobes(table, wo);  // the loop refers to it
-  for (const ShadedLobe& lobe : shaded.all())
-    sum = sum + Rgb(lobe.shape.share_above()) * lobe.amplitude;
+  for (const ShadedLobe& lobe : shaded.all()) sum = sum + Rgb(lobe.shape.share_above()) * lobe.amplitude;
   return sum;
 }
 
