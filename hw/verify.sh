@@ -9,7 +9,7 @@
 #               depths, and mutate
 #               (UNITS in the environment: only these)
 #   sphere      a sphere shaded by simulated units: hw/verify.sh sphere BURNISH LIBRARY SCRATCH REPORTS FIGURES
-# BURNISH is the command line, LIBRARY libburnish.a, SCRATCH a folder to work in. 77: a tool is missing.
+# BURNISH is the command line, LIBRARY libburnish_eval.a, SCRATCH a folder to work in. 77: a tool is missing.
 set -eu
 step=${1-} burnish=${2-} library=${3-} scratch=${4-}
 hw=$(cd "$(dirname "$0")" && pwd)
@@ -34,7 +34,7 @@ generate() {  # VECTORS of each unit into a fresh folder, where everything below
 build_bench() {  # of the module bench in bench.sv
   verilator --cc --exe --build -j "$jobs" -O3 --x-assign fast --x-initial fast --top-module bench --prefix Vbench \
     -Mdir bench_build -y . bench.sv "$hw/tb/bench.cpp" \
-    -CFLAGS "-std=c++20 -O2 -I$hw/../src" -LDFLAGS "$library -lfmt" > build.log 2>&1 ||
+    -CFLAGS "-std=c++20 -O2 -I$hw/../src" -LDFLAGS "$library" > build.log 2>&1 ||
     { cat build.log; exit 1; }
 }
 

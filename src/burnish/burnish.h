@@ -37,6 +37,12 @@
 #include <burnish/shaders/shader.h>
 #include <burnish/textures/ktx2.h>
 
+// Pictures of a material on a mesh.
+#include <burnish/image/png.h>
+#include <burnish/render/cpu_renderer.h>
+#include <burnish/render/mesh/shapes.h>
+#include <burnish/render/picture.h>
+
 // Whole libraries of materials.
 #include <burnish/library/batch.h>
 

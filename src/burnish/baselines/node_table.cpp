@@ -2,12 +2,12 @@
 #include <cassert>
 #include <cmath>
 
-#include <Imath/half.h>
 #include <fmt/format.h>
 
 #include <burnish/baselines/node_table.h>
 #include <burnish/error.h>
 #include <burnish/factors/table.h>
+#include <burnish/math/half.h>
 
 namespace burnish {
 

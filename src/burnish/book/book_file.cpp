@@ -2,12 +2,12 @@
 #include <cstring>
 #include <utility>
 
-#include <Imath/half.h>
 #include <fmt/format.h>
 
 #include <burnish/book/book_file.h>
 #include <burnish/error.h>
 #include <burnish/factors/cbor.h>
+#include <burnish/math/half.h>
 
 namespace burnish {
 

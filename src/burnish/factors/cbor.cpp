@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include <Imath/half.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
 #include <burnish/factors/cbor.h>
+#include <burnish/math/half.h>
 
 namespace burnish {
 

@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <cstring>
 
-#include <Imath/half.h>
 #include <fmt/format.h>
 
 #include <burnish/error.h>
 #include <burnish/factors/table_format.h>
 #include <burnish/math/closest_name.h>
+#include <burnish/math/half.h>
 
 namespace burnish {
 

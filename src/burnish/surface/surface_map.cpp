@@ -3,10 +3,10 @@
 #include <cstring>
 #include <limits>
 
-#include <Imath/half.h>
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/math/half.h>
 #include <burnish/surface/surface_map.h>
 
 namespace burnish {

@@ -6,7 +6,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Imath/half.h>
 #include <fmt/format.h>
 
 #include <burnish/error.h>
@@ -14,6 +13,7 @@
 #include <burnish/fitting/book/three_channels.h>
 #include <burnish/fitting/numerics/eigenvectors.h>
 #include <burnish/fitting/refinement/training_set.h>
+#include <burnish/math/half.h>
 
 namespace burnish {
 
