@@ -1,5 +1,6 @@
 # Installs BUILD under SCRATCH, compiles each installed header alone, then configures, builds and runs the consumer beside
-# this file, which holds the example of SOURCE/README.md.
+# this file, which holds the example of SOURCE/README.md. Then each part of the library: complete without outer ones, and
+# its program of examples/programs works.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output
     WORKING_DIRECTORY ${SCRATCH})
@@ -38,3 +39,67 @@ if(NOT output MATCHES "^burnish evaluates a model whose file has [1-9][0-9]* byt
   message(FATAL_ERROR "the consumer printed '${output}'")
 endif()
 run(${SCRATCH}/prefix/bin/burnish --help)
+
+# Every object of burnish::eval links with the standard library alone, and of the others with their own part's libraries:
+# nothing calls outward.
+set(engine ${SCRATCH}/engine)
+set(library_folder ${SCRATCH}/prefix/${LIBRARY_FOLDER})
+file(WRITE ${SCRATCH}/empty.cpp "int main() {}\n")
+run(${COMPILER} empty.cpp -Wl,--whole-archive ${library_folder}/libburnish_eval.a -Wl,--no-whole-archive -o whole_eval)
+foreach(part IN ITEMS fit io render library)
+  file(WRITE ${SCRATCH}/whole_${part}/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)
+project(whole LANGUAGES CXX)
+find_package(burnish REQUIRED COMPONENTS ${part})
+add_executable(whole ${SCRATCH}/empty.cpp)
+target_link_libraries(whole PRIVATE -Wl,--whole-archive ${library_folder}/libburnish_${part}.a -Wl,--no-whole-archive
+  burnish::${part})
+")
+  run(${CMAKE_COMMAND} -S whole_${part} -B whole_${part}/built -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
+    -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix)
+  run(${CMAKE_COMMAND} --build whole_${part}/built)
+endforeach()
+
+# burnish::eval is found where no other library is, and its program has none of them.
+run(${CMAKE_COMMAND} -S ${SOURCE}/examples/programs -B ${engine} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
+  -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix -DPARTS=eval
+  -DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenEXR=ON -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON
+  -DCMAKE_DISABLE_FIND_PACKAGE_LAPACK=ON -DCMAKE_DISABLE_FIND_PACKAGE_Threads=ON)
+run(${CMAKE_COMMAND} --build ${engine})
+run(ldd ${engine}/engine)
+string(REGEX MATCHALL "lib[a-z0-9_+-]+[.]so" libraries "${output}")
+list(REMOVE_ITEM libraries libstdc++.so libm.so libc.so libgcc_s.so libpthread.so)
+list(FILTER libraries EXCLUDE REGEX "^ld-linux")
+if(libraries)
+  message(FATAL_ERROR "engine: expected the standard library alone, found ${libraries}")
+endif()
+run(strip -o engine_stripped ${engine}/engine)
+run(strip --strip-unneeded -o libburnish_eval_stripped.a ${library_folder}/libburnish_eval.a)
+file(SIZE ${engine}/engine size_of_engine)
+file(SIZE ${SCRATCH}/engine_stripped size_of_stripped)
+file(SIZE ${SCRATCH}/libburnish_eval_stripped.a size_of_library)
+message(STATUS "engine: ${size_of_engine} bytes, ${size_of_stripped} stripped; libburnish_eval.a stripped: ${size_of_library}")
+if(size_of_engine GREATER 2097152)
+  message(FATAL_ERROR "engine: expected at most 2 MiB, found ${size_of_engine} bytes")
+endif()
+
+# The other parts' programs, each on what the ones before it wrote.
+run(${CMAKE_COMMAND} -S ${SOURCE}/examples/programs -B ${SCRATCH}/programs -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Release
+  -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix)
+run(${CMAKE_COMMAND} --build ${SCRATCH}/programs)
+run(${SCRATCH}/programs/fit_paint)
+run(${engine}/engine paint.burnish)
+message(STATUS "engine: ${output}")
+if(NOT output MATCHES "^first value [0-9.]+ after" OR NOT EXISTS ${SCRATCH}/engine.ppm)
+  message(FATAL_ERROR "engine printed '${output}'")
+endif()
+run(${SCRATCH}/programs/convert_file paint.burnish csv converted.csv)
+run(${SCRATCH}/programs/draw_sphere paint.burnish sphere.png)
+run(${SCRATCH}/programs/fit_library library ggx:alpha_x=0.2,alpha_y=0.2 ggx:alpha_x=0.4,alpha_y=0.4)
+if(NOT output MATCHES "^2 of 2 materials are fitted\n$")
+  message(FATAL_ERROR "fit_library printed '${output}'")
+endif()
+foreach(file IN ITEMS converted.csv sphere.png library/index.html)
+  if(NOT EXISTS ${SCRATCH}/${file})
+    message(FATAL_ERROR "the programs did not write ${file}")
+  endif()
+endforeach()

@@ -1,0 +1,25 @@
+// A measurement in another format, with burnish::io: convert_file FILE FORMAT RESULT, a format of kConvertFormats. Prints
+// what the result says less than the file does.
+#include <cstdio>
+#include <exception>
+
+#include <burnish/file.h>
+#include <burnish/io/convert.h>
+#include <burnish/io/open_source.h>
+
+int main(int count, char** arguments) {
+  if (count != 4) {
+    std::fprintf(stderr, "usage: convert_file FILE FORMAT RESULT\n");
+    return 2;
+  }
+  try {
+    const burnish::Source source = burnish::open_source(arguments[1], {});
+    const burnish::Converted converted = burnish::convert(source, arguments[2]);
+    burnish::write_then_rename(arguments[3], converted.bytes);
+    for (const auto& loss : converted.losses) std::printf("lost: %s\n", loss.c_str());
+    std::printf("%s is written: %zu bytes\n", arguments[3], converted.bytes.size());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
