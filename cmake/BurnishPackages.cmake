@@ -1,50 +1,77 @@
-# What packages hold besides programs, headers and libraries, and the Debian package itself (`make deb`).
+# What packages hold besides programs, headers and libraries, and the Debian packages themselves (`make deb`).
 
 # The package's own version, and its changelog.
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 configure_file(cmake/debian-changelog.in debian-changelog @ONLY)
 
+# What every Debian package has to have, in its own folder of documents; compressed as Debian's policy asks.
+function(burnish_debian_documents package component)
+  install(CODE "
+    set(folder \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/doc/${package}\")
+    file(MAKE_DIRECTORY \"\${folder}\")
+    configure_file(\"${PROJECT_SOURCE_DIR}/cmake/debian-copyright\" \"\${folder}/copyright\" COPYONLY)
+    configure_file(\"${PROJECT_SOURCE_DIR}/CHANGELOG.md\" \"\${folder}/changelog\" COPYONLY)
+    configure_file(\"${PROJECT_BINARY_DIR}/debian-changelog\" \"\${folder}/changelog.Debian\" COPYONLY)
+    execute_process(COMMAND gzip -9nf \"\${folder}/changelog\" \"\${folder}/changelog.Debian\"
+      COMMAND_ERROR_IS_FATAL ANY)" COMPONENT ${component})
+endfunction()
+burnish_debian_documents(burnish programs)
+burnish_debian_documents(libburnish-dev burnish)
+
 # What the command line says of itself, in the forms that a system looks for; compressed as Debian's policy asks.
 set(describe "\"$<TARGET_FILE:burnish_cli>\" describe")
 install(CODE "
   set(share \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\")
-  file(MAKE_DIRECTORY \"\${share}/bash-completion/completions\" \"\${share}/zsh/vendor-completions\"
-    \"\${share}/doc/burnish\")
+  file(MAKE_DIRECTORY \"\${share}/bash-completion/completions\" \"\${share}/zsh/vendor-completions\")
   execute_process(COMMAND ${describe} -o \"\${share}/man/man1\" COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND ${describe} --bash COMMAND_ERROR_IS_FATAL ANY
     OUTPUT_FILE \"\${share}/bash-completion/completions/burnish\")
   execute_process(COMMAND ${describe} --zsh COMMAND_ERROR_IS_FATAL ANY
     OUTPUT_FILE \"\${share}/zsh/vendor-completions/_burnish\")
-  configure_file(\"${PROJECT_SOURCE_DIR}/cmake/debian-copyright\" \"\${share}/doc/burnish/copyright\" COPYONLY)
-  configure_file(\"${PROJECT_SOURCE_DIR}/CHANGELOG.md\" \"\${share}/doc/burnish/changelog\" COPYONLY)
-  configure_file(\"${PROJECT_BINARY_DIR}/debian-changelog\" \"\${share}/doc/burnish/changelog.Debian\" COPYONLY)
   file(GLOB pages \"\${share}/man/man1/burnish*.1\")
-  execute_process(COMMAND gzip -9nf \${pages} \"\${share}/doc/burnish/changelog\"
-    \"\${share}/doc/burnish/changelog.Debian\" COMMAND_ERROR_IS_FATAL ANY)")
+  execute_process(COMMAND gzip -9nf \${pages} COMMAND_ERROR_IS_FATAL ANY)" COMPONENT programs)
 
 find_package(embree REQUIRED)  # for its version
 configure_file(cmake/burnish.pc.in burnish.pc @ONLY)
 # of an architecture where the system keeps several
-install(FILES ${PROJECT_BINARY_DIR}/burnish.pc DESTINATION lib/${CMAKE_LIBRARY_ARCHITECTURE}/pkgconfig)
+install(FILES ${PROJECT_BINARY_DIR}/burnish.pc DESTINATION lib/${CMAKE_LIBRARY_ARCHITECTURE}/pkgconfig
+  COMPONENT burnish)
 
-# One package: programs, manual pages, completions, headers, the static library, what finds it.
+# Two packages: burnish, of programs, manual pages and completions; libburnish-dev, of headers, the static libraries and
+# what finds them. `make build` makes both.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "burnish developers <burnish@example.org>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "measured reflectance as a few small positive textures")
-set(CPACK_PACKAGE_DESCRIPTION
+set(CPACK_DEBIAN_PROGRAMS_DESCRIPTION
 "Turns any BRDF, measured, scattered or analytic, into a few small positive
 textures and a short shader, with a known error. Reads MERL, RGL, Cornell,
 MBSDF, Zemax, Klems, ASTM E1392, OpenMATERIAL, ALTA, Speos, FRED, UTIA, tensor trees,
 Fourier BSDFs and CSV files as they are. Also evaluates glossy highlights without pow, from
 SIMD code to a hardware block.
 .
-This package holds the command line, its manual pages, and the C++ library.")
+This package holds the command line and its manual pages.")
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION
+"Headers and static libraries of burnish. burnish::eval evaluates models with
+the C++ standard library alone; burnish::fit, burnish::io, burnish::render and
+burnish::library stand on it, and on what this package suggests.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# What a program needs to link the static library.
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libtbb-dev, libhwy-dev, libopenexr-dev, libpng-dev, libpugixml-dev, \
-libopenblas-serial-dev, libepoxy-dev, libembree-dev, libzstd-dev, libfmt-dev, libsqlite3-dev")
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+set(CPACK_COMPONENTS_ALL programs eval fit io render library burnish)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME burnish)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libburnish-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+# What a program needs to link more than burnish::eval.
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libtbb-dev, libopenexr-dev, libpng-dev, libpugixml-dev, \
+libopenblas-serial-dev, libepoxy-dev, libembree-dev, libzstd-dev, libsqlite3-dev")
 include(CPack)
+cpack_add_component_group(programs)
+cpack_add_component_group(development)
+cpack_add_component(programs GROUP programs)
+foreach(component IN ITEMS eval fit io render library burnish)
+  cpack_add_component(${component} GROUP development)
+endforeach()

@@ -28,7 +28,7 @@ check_deb() {
   fi
   mount -t proc proc "$root/proc"
   cp "$1" "$here/examples/demo.sh" "$root/tmp/"
-  chroot "$root" apt-get -qq purge burnish > /dev/null 2>&1 || true
+  chroot "$root" apt-get -qq purge burnish libburnish-dev > /dev/null 2>&1 || true
   local start
   start=$(date +%s)
   chroot "$root" sh -c "export DEBIAN_FRONTEND=noninteractive; apt-get -qq update &&
@@ -54,9 +54,15 @@ check_deb() {
   umount "$root/proc"
 }
 
-# What the package suggests is enough for a program against the library, found by pkg-config and by CMake.
+# What libburnish-dev suggests is enough for a program against the library, found by pkg-config and by CMake.
 check_library() {
-  local suggested=$(chroot "$root" dpkg-query -W -f '${Suggests}' burnish | tr -d ,)
+  local development=("$folder"/libburnish-dev_*.deb)
+  echo "== $(size "${development[0]}")"
+  at_most "${development[0]}" 15
+  lintian --allow-root --fail-on error "${development[0]}"
+  cp "${development[0]}" "$root/tmp/"
+  chroot "$root" dpkg -i "/tmp/${development[0]##*/}" > "$work/log" 2>&1 || { tail -20 "$work/log"; exit 1; }
+  local suggested=$(chroot "$root" dpkg-query -W -f '${Suggests}' libburnish-dev | tr -d ,)
   chroot "$root" sh -c "export DEBIAN_FRONTEND=noninteractive
     apt-get -qq install --no-install-recommends g++ make cmake pkgconf $suggested" > "$work/log" 2>&1 ||
     { tail -20 "$work/log"; exit 1; }
@@ -137,7 +143,7 @@ check() {
   [ -e "$2" ] || { echo "$folder: no ${2##*/}" >&2; exit 1; }
   "check_$1" "$2"
 }
-for package in "$folder"/*.deb; do check deb "$package"; done
+for package in "$folder"/burnish_*.deb; do check deb "$package"; done
 for package in "$folder"/*.whl; do check wheel "$package"; done
 for package in "$folder"/burnish-[0-9]*[0-9].tar.gz; do check sdist "$package"; done
 for package in "$folder"/*.tgz; do check npm "$package"; done
