@@ -1,5 +1,6 @@
 # make demo   installs packages, builds the command line, and takes a measurement to two textures (INPUT=file for your own)
 # make test   installs tools, builds with sanitizers and optimized, runs every test
+# make check  a quarter of that: one build, unit tests, documents
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
 # make deb, make wheel, make sdist, make npm: packages in build/packages; make release: all of them, the sources and the
@@ -8,7 +9,7 @@
 # make bench, make compile-cost, make fuzz, make damaged, make report, make cost-report, make sampling-report, make area-light-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
 # make cluster-test  a batch on a real Slurm of two nodes on this machine, killed now and then
-.PHONY: test-announcement cluster-test compile-cost demo test build reports python deb wheel sdist npm source-archive packaging-deps release release-check studio studio-test build-deps deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report area-light-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api options
+.PHONY: check test-announcement cluster-test compile-cost demo test build reports python deb wheel sdist npm source-archive packaging-deps release release-check studio studio-test build-deps deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report area-light-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api options
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -43,6 +44,16 @@ compile-cost: build-deps
 
 demo: build
 	@examples/demo.sh "$(BURNISH)" "$(OUT)" "$(INPUT)"
+
+# A quick look before a commit: the optimized build once, unit tests, documents, formatting where this clang-format is.
+CHECK_DEPS = cmake/debian-packages.txt cmake/debian-test-packages.txt
+check: docs-check include-check
+	@cmake/install_packages.sh $(CHECK_DEPS)
+	@if clang-format --version 2> /dev/null | grep -q 'version 14\.'; then tests/format/clang_format.sh --check $(SOURCES); \
+	else echo "formatting is not checked: that takes clang-format 14 (make format-check brings it)"; fi
+	@cmake --preset release -DBURNISH_WERROR=$(WERROR) > /dev/null
+	@cmake --build --preset release -j $(JOBS) --target burnish_tests
+	@ctest --preset release -j $(JOBS) -R '^burnish_tests\.'
 
 test-announcement:
 	@echo "Debian's packages are installed where they are missing (cmake/debian-*packages.txt),"
@@ -149,7 +160,7 @@ report cost-report sampling-report area-light-report shader-report openpbr-repor
 	@export BURNISH_COMMIT="$(COMMIT)"; for name in $(NAMES); do $(REPORTS) $$name docs/results || exit 1; done
 
 HW := build/hw-report
-LIBRARY := $(CURDIR)/build/release/src/burnish/libburnish.a
+LIBRARY := $(CURDIR)/build/release/src/burnish/libburnish_eval.a
 hw-report: test-deps reports
 	@command -v nextpnr-ice40 > /dev/null || $(SUDO) apt-get install -y -qq --no-install-recommends nextpnr-ice40 > /dev/null
 	@rm -rf $(HW) && mkdir -p $(HW) docs/figures docs/results
