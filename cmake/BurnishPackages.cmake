@@ -31,11 +31,16 @@ install(CODE "
   file(GLOB pages \"\${share}/man/man1/burnish*.1\")
   execute_process(COMMAND gzip -9nf \${pages} COMMAND_ERROR_IS_FATAL ANY)" COMPONENT programs)
 
+# For pkg-config, in the folder of an architecture where the system keeps several. It is found from where it lies.
 find_package(embree REQUIRED)  # for its version
+cmake_path(SET burnish_pc_folder NORMALIZE lib/${CMAKE_LIBRARY_ARCHITECTURE}/pkgconfig)
+string(REGEX REPLACE "[^/]+" ".." burnish_pc_to_prefix ${burnish_pc_folder})
+set(burnish_pc_lapack "-llapack -lblas ")
+if(BURNISH_EIGEN_LAPACK)
+  set(burnish_pc_lapack)
+endif()
 configure_file(cmake/burnish.pc.in burnish.pc @ONLY)
-# of an architecture where the system keeps several
-install(FILES ${PROJECT_BINARY_DIR}/burnish.pc DESTINATION lib/${CMAKE_LIBRARY_ARCHITECTURE}/pkgconfig
-  COMPONENT burnish)
+install(FILES ${PROJECT_BINARY_DIR}/burnish.pc DESTINATION ${burnish_pc_folder} COMPONENT burnish)
 
 # Two packages: burnish, of programs, manual pages and completions; libburnish-dev, of headers, the static libraries and
 # what finds them. `make build` makes both.

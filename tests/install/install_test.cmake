@@ -40,6 +40,22 @@ if(NOT output MATCHES "^burnish evaluates a model whose file has [1-9][0-9]* byt
 endif()
 run(${SCRATCH}/prefix/bin/burnish --help)
 
+# burnish.pc finds the prefix from where it lies itself, and what it says builds the same program.
+find_program(pkg_config NAMES pkg-config pkgconf REQUIRED)
+file(GLOB_RECURSE pc ${SCRATCH}/prefix/lib/burnish.pc)
+cmake_path(GET pc PARENT_PATH pc_folder)
+set(ask_pkg_config ${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${pc_folder} ${pkg_config})
+run(${ask_pkg_config} --variable=prefix burnish)
+string(STRIP "${output}" pc_prefix)
+cmake_path(NORMAL_PATH pc_prefix)
+if(NOT pc_prefix STREQUAL ${SCRATCH}/prefix/)
+  message(FATAL_ERROR "burnish.pc: expected the prefix ${SCRATCH}/prefix, found ${pc_prefix}")
+endif()
+run(${ask_pkg_config} --cflags --libs burnish)
+separate_arguments(pc_flags UNIX_COMMAND "${output}")
+run(${COMPILER} -std=c++20 -I ${SCRATCH} ${CMAKE_CURRENT_LIST_DIR}/consumer.cpp ${pc_flags} -o by_pkg_config)
+run(${SCRATCH}/by_pkg_config)
+
 # Every object of burnish::eval links with the standard library alone, and of the others with their own part's libraries:
 # nothing calls outward.
 set(engine ${SCRATCH}/engine)
