@@ -114,7 +114,7 @@ release:
 	@tar -C build/studio --transform 's,^\.,burnish-studio-$(VERSION),' -czf $(RELEASE)/burnish-studio-$(VERSION).tar.gz .
 	@tests/notices/check.py $(RELEASE)/*.deb $(RELEASE)/*.whl $(RELEASE)/*.tgz $(RELEASE)/burnish-studio-*.tar.gz
 	@tests/release/versions.sh $(RELEASE)
-	@cd $(RELEASE) && sha256sum burnish* > SHA256SUMS && cat SHA256SUMS
+	@cd $(RELEASE) && sha256sum *burnish* > SHA256SUMS && cat SHA256SUMS
 
 SYSTEMS ?= bookworm trixie
 release-check: release

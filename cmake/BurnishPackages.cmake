@@ -15,8 +15,16 @@ function(burnish_debian_documents package component)
     execute_process(COMMAND gzip -9nf \"\${folder}/changelog\" \"\${folder}/changelog.Debian\"
       COMMAND_ERROR_IS_FATAL ANY)" COMPONENT ${component})
 endfunction()
-burnish_debian_documents(burnish programs)
-burnish_debian_documents(libburnish-dev burnish)
+# The packages, and the component of each that has what there is once a package.
+set(burnish_debian_packages burnish libburnish-dev)
+set(burnish_debian_components programs burnish)
+foreach(package component IN ZIP_LISTS burnish_debian_packages burnish_debian_components)
+  burnish_debian_documents(${package} ${component})
+  # nobody asked Debian for a first version
+  file(WRITE ${PROJECT_BINARY_DIR}/lintian/${package} "${package}: initial-upload-closes-no-bugs\n")
+  install(FILES ${PROJECT_BINARY_DIR}/lintian/${package} DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides
+    COMPONENT ${component})
+endforeach()
 
 # What the command line says of itself, in the forms that a system looks for; compressed as Debian's policy asks.
 set(describe "\"$<TARGET_FILE:burnish_cli>\" describe")
@@ -50,9 +58,9 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "measured reflectance as a few small posit
 set(CPACK_DEBIAN_PROGRAMS_DESCRIPTION
 "Turns any BRDF, measured, scattered or analytic, into a few small positive
 textures and a short shader, with a known error. Reads MERL, RGL, Cornell,
-MBSDF, Zemax, Klems, ASTM E1392, OpenMATERIAL, ALTA, Speos, FRED, UTIA, tensor trees,
-Fourier BSDFs and CSV files as they are. Also evaluates glossy highlights without pow, from
-SIMD code to a hardware block.
+MBSDF, Zemax, Klems, ASTM E1392, OpenMATERIAL, ALTA, Speos, FRED, UTIA,
+tensor trees, Fourier BSDFs and CSV files as they are. Also evaluates glossy
+highlights without pow, from SIMD code to a hardware block.
 .
 This package holds the command line and its manual pages.")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION

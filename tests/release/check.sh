@@ -21,7 +21,7 @@ seconds() { echo "$(($(date +%s) - $1)) s"; }
 check_deb() {
   echo "== $(size "$1")"
   at_most "$1" 15
-  lintian --allow-root --fail-on error "$1"
+  lintian --allow-root --fail-on error,warning "$1"
   if [ ! -x "$root/bin/sh" ]; then
     debootstrap --variant=minbase bookworm "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}" > "$work/log" ||
       { tail -20 "$work/log"; exit 1; }
@@ -59,7 +59,7 @@ check_library() {
   local development=("$folder"/libburnish-dev_*.deb)
   echo "== $(size "${development[0]}")"
   at_most "${development[0]}" 15
-  lintian --allow-root --fail-on error "${development[0]}"
+  lintian --allow-root --fail-on error,warning "${development[0]}"
   cp "${development[0]}" "$root/tmp/"
   chroot "$root" dpkg -i "/tmp/${development[0]##*/}" > "$work/log" 2>&1 || { tail -20 "$work/log"; exit 1; }
   local suggested=$(chroot "$root" dpkg-query -W -f '${Suggests}' libburnish-dev | tr -d ,)
