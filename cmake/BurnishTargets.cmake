@@ -4,10 +4,9 @@ function(burnish_target name)
   target_compile_options(${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
     -Wno-missing-field-initializers  # designated initializers leave the rest at its defaults
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # false alarms of g++ 12 in <string>
-  if(NOT CCACHE)  # what is compiled once: memory for time, a sixth of which the compiler else takes to free some
-    target_compile_options(${name} PRIVATE
-      "$<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-expand=300;--param=ggc-min-heapsize=500000>")
-  endif()
+  # memory for time, a sixth of which the compiler else takes to free some
+  target_compile_options(${name} PRIVATE
+    "$<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-expand=300;--param=ggc-min-heapsize=500000>")
   if(BURNISH_WERROR)
     target_compile_options(${name} PRIVATE -Werror)
   endif()
