@@ -143,20 +143,89 @@ TEST(Fit, MakesAModelOfEverySource) {
   }
 }
 
-TEST(Fit, MakesEveryForm) {
+// What holds of a fit of every form, which the name of it is told beside.
+
+void expect_near_source(const Source& source, const FitForm& form, const Fit& made, const std::string& name) {
+  EXPECT_LT(mean_error(source.ref(), made.ref()), 1) << name;
+  EXPECT_GT(made.report.seconds, 0) << name;
+  ASSERT_TRUE(made.report.held_out) << name;
+  EXPECT_NEAR(made.report.held_out->relative, mean_error(source.ref(), made.ref()), 0.1) << name;
+  if (const auto* budget = std::get_if<Budget>(&form)) {
+    EXPECT_LE(made.bytes(), budget->bytes) << name;
+  }
+  EXPECT_EQ(std::holds_alternative<BaselineBrdf>(made.brdf), std::holds_alternative<BaselineMethod>(form));
+}
+
+void expect_lower_error(const Fit& made, const std::string& name) {
+  const auto summary = made.report.summary();
+  const bool decomposition = name == "svd" || name == "nd" || name == "nmf";
+  ASSERT_EQ(summary.has_value(), !decomposition) << name;
+  if (!summary) return;
+  EXPECT_LE(summary->error_after, summary->error_before) << name;
+  EXPECT_GE(summary->iterations, 0) << name;
+  EXPECT_FALSE(to_string(summary->stop_reason).empty());
+}
+
+void expect_report_in_file(const Fit& made, const std::string& name) {
+  const auto notes = nlohmann::json::parse(to_json(made.report));
+  const FileBytes file = memory_file(format_fit(made));
+  if (std::holds_alternative<FactoredBrdf>(made.brdf)) {
+    const Model model = parse_model(file);
+    EXPECT_EQ(model.brdf, made.model()) << name;
+    EXPECT_EQ(nlohmann::json::parse(model.notes), notes) << name;
+    EXPECT_EQ(to_model(made).notes, to_json(made.report)) << name;
+  } else {
+    const Baseline baseline = parse_baseline(file);
+    EXPECT_EQ(nlohmann::json::parse(baseline.notes), notes) << name;
+    EXPECT_EQ(baseline_bytes(baseline.brdf), made.bytes());
+    EXPECT_THROW(to_model(made), Error) << name;
+    EXPECT_THROW(made.model(), Error) << name;
+  }
+  EXPECT_EQ(notes.at("source"), "paint");
+  EXPECT_EQ(notes.at("relative"), made.report.held_out->relative) << name;
+  const auto summary = nlohmann::json::parse(summary_json(made, "out", 1.5));
+  EXPECT_EQ(summary.contains("shader"), std::holds_alternative<FactoredBrdf>(made.brdf)) << name;
+  EXPECT_EQ(summary.at("bytes"), made.bytes()) << name;
+  EXPECT_EQ(summary.at("seconds"), 1.5);
+}
+
+// The fit of two threads, whose stages only go on.
+Fit fit_with_stages(const Source& source, FitOptions options, const std::string& name) {
+  std::map<std::string, double, std::less<>> stages;
+  options.progress = [&](std::string_view stage, double fraction) {
+    auto& last = stages.try_emplace(std::string(stage), 0).first->second;
+    EXPECT_GE(fraction, last) << name << ": " << stage;
+    EXPECT_LE(fraction, 1) << name << ": " << stage;
+    last = fraction;
+  };
+  const ThreadLimit two(2);
+  Fit made = fit(source, options);
+  // one lobe of few unknowns is solved at once
+  EXPECT_TRUE(std::holds_alternative<OneLobe>(*options.form) || !stages.empty()) << name;
+  return made;
+}
+
+// One fit of each form serves all that holds of it: fits are what takes time.
+TEST(Fit, MakesEveryFormAndSaysWhatItMade) {
   const Source source = source_of("paint", paint());
   for (const auto& [name, options] : every_form()) {
-    const Fit made = fit(source, options);
-    EXPECT_LT(mean_error(source.ref(), made.ref()), 1) << name;
-    EXPECT_GT(made.report.seconds, 0) << name;
-    ASSERT_TRUE(made.report.held_out) << name;
-    EXPECT_NEAR(made.report.held_out->relative, mean_error(source.ref(), made.ref()), 0.1) << name;
-    if (const auto* budget = std::get_if<Budget>(&*options.form)) {
-      EXPECT_LE(made.bytes(), budget->bytes) << name;
-    }
-    EXPECT_EQ(std::holds_alternative<BaselineBrdf>(made.brdf),
-              std::holds_alternative<BaselineMethod>(*options.form));
+    const Fit made = fit_with_stages(source, options, name);
+    expect_near_source(source, *options.form, made, name);
     EXPECT_EQ(made.report.energy.has_value(), options.conserve_energy) << name;
+    expect_lower_error(made, name);
+    expect_report_in_file(made, name);
+    if (BURNISH_SANITIZED) continue;
+    const ThreadLimit one(1);
+    EXPECT_EQ(format_fit(fit(source, options)), format_fit(made)) << name;
+  }
+}
+
+TEST(Fit, EndsWhereTheCallerThrows) {
+  const Source source = source_of("paint", paint());
+  for (auto [name, options] : every_form()) {
+    if (std::holds_alternative<OneLobe>(*options.form)) continue;
+    options.progress = [](std::string_view, double) { throw Error("enough"); };
+    EXPECT_EQ(error_of([&] { fit(source, options); }), "enough") << name;
   }
 }
 
@@ -211,18 +280,6 @@ TEST(Fit, GivesScatteredSamplesOneLobeOfTheBudget) {
   EXPECT_EQ(std::get<OneLobeReport>(made.report.how).floor, 1e-4);
 }
 
-TEST(Fit, GivesTheSameBitsForTheSameOptions) {
-  BURNISH_SKIP_WHERE_SANITIZED();
-  const Source source = source_of("paint", paint());
-  for (const auto& [name, options] : every_form()) {
-    const auto file = [&](int threads) {
-      const ThreadLimit limit(threads);
-      return format_fit(fit(source, options));
-    };
-    EXPECT_EQ(file(1), file(2)) << name;
-  }
-}
-
 TEST(Fit, DependsOnTheSeedAndOnWhatIsAskedFor) {
   const Source source = source_of("brushed", brushed());
   const FitOptions plain = small_lobe(source);
@@ -239,20 +296,6 @@ TEST(Fit, DependsOnTheSeedAndOnWhatIsAskedFor) {
   EXPECT_EQ(model, model_with([](FitOptions& o) { o.score = false; }));
 }
 
-TEST(Fit, LowersTheErrorThatItReports) {
-  BURNISH_SKIP_WHERE_SANITIZED();
-  const Source source = source_of("paint", paint());
-  for (const auto& [name, options] : every_form()) {
-    const auto summary = fit(source, options).report.summary();
-    const bool decomposition = name == "svd" || name == "nd" || name == "nmf";
-    ASSERT_EQ(summary.has_value(), !decomposition) << name;
-    if (!summary) continue;
-    EXPECT_LE(summary->error_after, summary->error_before) << name;
-    EXPECT_GE(summary->iterations, 0) << name;
-    EXPECT_FALSE(to_string(summary->stop_reason).empty());
-  }
-}
-
 TEST(Fit, MakesByDefaultWhatTheDefaultBudgetSays) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const Source source = source_of("paint", paint());
@@ -261,54 +304,6 @@ TEST(Fit, MakesByDefaultWhatTheDefaultBudgetSays) {
   EXPECT_EQ(made.model(), named.model());
   EXPECT_LE(made.bytes(), 16u << 10);
   EXPECT_LE(fetch_count(made.model()), 2u);
-}
-
-TEST(Fit, TellsProgressByStagesAndEndsWhereTheCallerThrows) {
-  BURNISH_SKIP_WHERE_SANITIZED();
-  const Source source = source_of("paint", paint());
-  for (auto [name, options] : every_form()) {
-    std::map<std::string, double, std::less<>> stages;
-    options.progress = [&](std::string_view stage, double fraction) {
-      auto& last = stages.try_emplace(std::string(stage), 0).first->second;
-      EXPECT_GE(fraction, last) << name << ": " << stage;
-      EXPECT_LE(fraction, 1) << name << ": " << stage;
-      last = fraction;
-    };
-    fit(source, options);
-    // one lobe of few unknowns is solved at once
-    if (std::holds_alternative<OneLobe>(*options.form)) continue;
-    EXPECT_FALSE(stages.empty()) << name;
-    options.progress = [](std::string_view, double) { throw Error("enough"); };
-    EXPECT_EQ(error_of([&] { fit(source, options); }), "enough") << name;
-  }
-}
-
-TEST(Fit, KeepsItsReportInItsFile) {
-  BURNISH_SKIP_WHERE_SANITIZED();
-  const Source source = source_of("paint", paint());
-  for (const auto& [name, options] : every_form()) {
-    const Fit made = fit(source, options);
-    const auto notes = nlohmann::json::parse(to_json(made.report));
-    const FileBytes file = memory_file(format_fit(made));
-    if (std::holds_alternative<FactoredBrdf>(made.brdf)) {
-      const Model model = parse_model(file);
-      EXPECT_EQ(model.brdf, made.model()) << name;
-      EXPECT_EQ(nlohmann::json::parse(model.notes), notes) << name;
-      EXPECT_EQ(to_model(made).notes, to_json(made.report)) << name;
-    } else {
-      const Baseline baseline = parse_baseline(file);
-      EXPECT_EQ(nlohmann::json::parse(baseline.notes), notes) << name;
-      EXPECT_EQ(baseline_bytes(baseline.brdf), made.bytes());
-      EXPECT_THROW(to_model(made), Error) << name;
-      EXPECT_THROW(made.model(), Error) << name;
-    }
-    EXPECT_EQ(notes.at("source"), "paint");
-    EXPECT_EQ(notes.at("relative"), made.report.held_out->relative) << name;
-    const auto summary = nlohmann::json::parse(summary_json(made, "out", 1.5));
-    EXPECT_EQ(summary.contains("shader"), std::holds_alternative<FactoredBrdf>(made.brdf)) << name;
-    EXPECT_EQ(summary.at("bytes"), made.bytes()) << name;
-    EXPECT_EQ(summary.at("seconds"), 1.5);
-  }
 }
 
 TEST(FitForm, IsOneLobeOrSeveral) {

@@ -78,10 +78,10 @@ TEST(FunctionBrdf, LoopsInsideItTakeUpNoWorkFromOutside) {
   const FunctionBrdf brdf(1, true, [&](std::span<const DirectionPair>, std::span<double>) {
     ++depth;
     if (depth > deepest) deepest = depth;
-    for_each_chunk(64, 1, [](std::size_t, std::size_t, std::size_t) { std::this_thread::yield(); });
+    for_each_chunk(16, 1, [](std::size_t, std::size_t, std::size_t) { std::this_thread::yield(); });
     --depth;
   });
-  for_each_chunk(500, 1, [&](std::size_t, std::size_t, std::size_t) {
+  for_each_chunk(200, 1, [&](std::size_t, std::size_t, std::size_t) {
     double f = 0;
     brdf.eval({0, 0, 1}, {0, 0, 1}, {&f, 1});
   });

@@ -43,7 +43,8 @@ std::size_t least(const Source& source, TableFormat format) {
 }
 
 TEST(ScatteredPlan, KeepsEveryBudget) {
-  for (const std::size_t channels : {1, 3, 31}) {
+  for (const std::size_t channels : {3, 1, 31}) {
+    if (BURNISH_SANITIZED && channels != 3) continue;
     const Source source = scattered(channels);
     for (const auto& format :
          {std::optional<TableFormat>(), std::optional(TableFormat::half), std::optional(TableFormat::single),
@@ -104,7 +105,8 @@ TEST(ScatteredPlan, ChoosesASmoothnessThatPredicts) {
 
 TEST(ScatteredPlan, DoesNotDependOnTheNumberOfThreads) {
   const Source source = scattered(4);
-  const FitOptions options{.form = Budget{.bytes = 2700, .scattered = {.reweightings = 1}}};
+  const std::uint64_t bytes = BURNISH_SANITIZED ? 700 : 2700;
+  const FitOptions options{.form = Budget{.bytes = bytes, .scattered = {.reweightings = 1}}};
   const Fit all = fit(source, options);
   const ThreadLimit one(1);
   EXPECT_EQ(fit(source, options).model(), all.model());

@@ -50,7 +50,9 @@ TEST(PlanFor, GivesAnAnisotropicSourceTheLobesItHas) {
 
 TEST(Search, ImprovesAPlanThatMissesAFactorAndRepeatsItself) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2,kd=0.2,f0=0.3");
-  const TrainingSet set = draw_training_set(ggx.ref(), {.pictures = 2000, .directions = 4000});
+  const int share = BURNISH_SANITIZED ? 4 : 1;  // of what takes sanitizers long
+  const TrainingSet set =
+      draw_training_set(ggx.ref(), {.pictures = 2000 / share, .directions = 4000 / share});
   LobePlan start{.lobes = 1,
                  .factors = {{"q", TableShape::line, {kProjectHalf}, 1, {}},
                              {"r", TableShape::line, {kProjectDifference}, 1, {}}}};
