@@ -45,7 +45,8 @@ compile-cost: build-deps
 demo: build
 	@examples/demo.sh "$(BURNISH)" "$(OUT)" "$(INPUT)"
 
-# A quick look before a commit: the optimized build once, unit tests, documents, formatting where this clang-format is.
+# A quick look before a commit: the optimized build once, unit tests but those with the label `long`, documents,
+# formatting where this clang-format is.
 CHECK_DEPS = cmake/debian-packages.txt cmake/debian-test-packages.txt
 check: docs-check include-check
 	@cmake/install_packages.sh $(CHECK_DEPS)
@@ -53,7 +54,7 @@ check: docs-check include-check
 	else echo "formatting is not checked: that takes clang-format 14 (make format-check brings it)"; fi
 	@cmake --preset release -DBURNISH_WERROR=$(WERROR) > /dev/null
 	@cmake --build --preset release -j $(JOBS) --target burnish_tests
-	@ctest --preset release -j $(JOBS) -R '^burnish_tests\.'
+	@ctest --preset release -j $(JOBS) -R '^burnish_tests\.' -LE long
 
 test-announcement:
 	@echo "Debian's packages are installed where they are missing (cmake/debian-*packages.txt),"

@@ -23,12 +23,26 @@ endfunction()
 # with sanitizers above all. Only what fails or is skipped is printed.
 # GCC 12's leak check takes the thread-local memory of one library in 256, where the address happens to end in 0x010,
 # for that of a glibc of 2014 and reads at the size of a block of memory: it is told to leave such memory alone.
+# The tests that tests/sanitized/left_out.txt names run in parts of their own, with the label `long`, begun first; with
+# sanitizers they do not.
 function(burnish_tests name parts)
+  set(list ${PROJECT_SOURCE_DIR}/tests/sanitized/left_out.txt)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${list})
+  file(STRINGS ${list} long REGEX "^[^# ]")
+  list(JOIN long ":" long)
+  burnish_test_parts(${name} "${name}" ${parts} "-${long}")
+  if(NOT BURNISH_SANITIZE)
+    burnish_test_parts(${name} "${name}.long" ${parts} "${long}" LABELS long COST 10)
+  endif()
+endfunction()
+
+# The tests of a program that a filter lets through, in parts NAME.0 and so on; further arguments: their properties.
+function(burnish_test_parts program name parts filter)
   math(EXPR last "${parts} - 1")
   foreach(part RANGE ${last})
-    add_test(NAME ${name}.${part} COMMAND ${name})
-    set_tests_properties(${name}.${part} PROPERTIES
-      ENVIRONMENT "GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${part};GTEST_BRIEF=1;ASAN_OPTIONS=intercept_tls_get_addr=0")
+    add_test(NAME ${name}.${part} COMMAND ${program})
+    set_tests_properties(${name}.${part} PROPERTIES ${ARGN} ENVIRONMENT "GTEST_FILTER=${filter};\
+GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${part};GTEST_BRIEF=1;ASAN_OPTIONS=intercept_tls_get_addr=0")
   endforeach()
 endfunction()
 
