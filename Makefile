@@ -16,6 +16,8 @@ SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
 SOURCES = $(shell find src apps tests examples python -name '*.h' -o -name '*.cpp')
 # Warnings are errors in the preset dev and where this is ON, as in CI: compilers of other systems warn of other things.
 WERROR ?= OFF
+# What configures the preset dev besides, in `make test`.
+DEV_OPTIONS ?=
 INPUT ?=
 OUT ?= out/demo
 FUZZ_SECONDS ?= 60
@@ -63,7 +65,7 @@ test-announcement:
 test: test-announcement test-deps format-check docs-check include-check
 	@mpi=$$(command -v mpicxx > /dev/null && echo ON || echo OFF); \
 	for preset in dev release; do \
-	  case $$preset in release) options="-DBURNISH_MPI=$$mpi -DBURNISH_WERROR=$(WERROR)" ;; *) options= ;; esac; \
+	  case $$preset in release) options="-DBURNISH_MPI=$$mpi -DBURNISH_WERROR=$(WERROR)" ;; *) options="$(DEV_OPTIONS)" ;; esac; \
 	  cmake --preset $$preset $$options > /dev/null && \
 	  cmake --build --preset $$preset -j $(JOBS) && \
 	  ctest --preset $$preset -j $(JOBS) || exit 1; \
