@@ -163,17 +163,17 @@ report cost-report sampling-report area-light-report shader-report openpbr-repor
 	@export BURNISH_COMMIT="$(COMMIT)"; for name in $(NAMES); do $(REPORTS) $$name docs/results || exit 1; done
 
 HW := build/hw-report
-LIBRARY := $(CURDIR)/build/release/src/burnish/libburnish_eval.a
+LIBRARIES := $(foreach ring,io eval,$(CURDIR)/build/release/src/burnish/libburnish_$(ring).a)
 hw-report: test-deps reports
 	@command -v nextpnr-ice40 > /dev/null || $(SUDO) apt-get install -y -qq --no-install-recommends nextpnr-ice40 > /dev/null
 	@rm -rf $(HW) && mkdir -p $(HW) docs/figures docs/results
-	@hw/verify.sh sphere $(CURDIR)/$(BURNISH) $(LIBRARY) $(HW)/sphere $(CURDIR)/$(REPORTS) $(CURDIR)/docs/figures > $(HW)/sphere.txt
+	@hw/verify.sh sphere $(CURDIR)/$(BURNISH) "$(LIBRARIES)" $(HW)/sphere $(CURDIR)/$(REPORTS) $(CURDIR)/docs/figures > $(HW)/sphere.txt
 	@hw/synthesize.sh $(CURDIR)/$(BURNISH) $(HW)/synthesis > $(HW)/synthesis.txt
 	@BURNISH_COMMIT="$(COMMIT)" hw/report.py $(BURNISH) $(HW)/synthesis.txt $(HW)/sphere.txt > $(HW)/hardware.md
 	@mv $(HW)/hardware.md docs/results/hardware.md
 
 hw-exhaustive: test-deps build
-	@hw/verify.sh exhaustive $(CURDIR)/$(BURNISH) $(LIBRARY) build/hw-exhaustive
+	@hw/verify.sh exhaustive $(CURDIR)/$(BURNISH) "$(LIBRARIES)" build/hw-exhaustive
 
 fuzz: test-deps
 	@JOBS=$(JOBS) tests/fuzz/run.sh $(FUZZ_SECONDS)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Checks of the hardware: hw/verify.sh STEP BURNISH LIBRARY SCRATCH
+# Checks of the hardware: hw/verify.sh STEP BURNISH LIBRARIES SCRATCH
 #   lint        verilator --lint-only -Wall on every unit
 #   simulate    Verilator against the C++ model, 20,000 vectors a unit with random pauses
 #   icarus      the generated test benches
@@ -8,10 +8,11 @@
 #   exhaustive  Verilator with every exponent and every input of every unit, the proofs for every exponent and three
 #               depths, and mutate
 #               (UNITS in the environment: only these)
-#   sphere      a sphere shaded by simulated units: hw/verify.sh sphere BURNISH LIBRARY SCRATCH REPORTS FIGURES
-# BURNISH is the command line, LIBRARY libburnish_eval.a, SCRATCH a folder to work in. 77: a tool is missing.
+#   sphere      a sphere shaded by simulated units: hw/verify.sh sphere BURNISH LIBRARIES SCRATCH REPORTS FIGURES
+# BURNISH is the command line, LIBRARIES "libburnish_io.a libburnish_eval.a" with their folders, SCRATCH a folder to work
+# in. 77: a tool is missing.
 set -eu
-step=${1-} burnish=${2-} library=${3-} scratch=${4-}
+step=${1-} burnish=${2-} libraries=${3-} scratch=${4-}
 hw=$(cd "$(dirname "$0")" && pwd)
 jobs=${JOBS:-2}
 rtl_dir=$hw/rtl
@@ -34,7 +35,7 @@ generate() {  # VECTORS of each unit into a fresh folder, where everything below
 build_bench() {  # of the module bench in bench.sv
   verilator --cc --exe --build -j "$jobs" -O3 --x-assign fast --x-initial fast --top-module bench --prefix Vbench \
     -Mdir bench_build -y . bench.sv "$hw/tb/bench.cpp" \
-    -CFLAGS "-std=c++20 -O2 -I$hw/../src" -LDFLAGS "$library" > build.log 2>&1 ||
+    -CFLAGS "-std=c++20 -O2 -I$hw/../src" -LDFLAGS "$libraries" > build.log 2>&1 ||
     { cat build.log; exit 1; }
 }
 
@@ -195,5 +196,5 @@ case $step in
       set -- "$@" "$unit=$unit.answers"
     done
     "$reports" hardware-sphere picture "$figures" "$@" ;;
-  *) sed -n '2,13s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+  *) sed -n '2,14s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
 esac
