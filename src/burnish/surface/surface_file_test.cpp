@@ -6,6 +6,7 @@
 #include <burnish/error.h>
 #include <burnish/factors/compact_file.h>
 #include <burnish/surface/surface_file.h>
+#include <burnish/testing/sanitized.h>
 #include <burnish/testing/surfaces.h>
 #include <burnish/testing/tools.h>
 
@@ -117,7 +118,8 @@ TEST_P(DamagedSurface, ThrowsOrIsSound) {
   const std::string bytes = GetParam() ? exr_seed() : seed();
   std::array<double, 3> f;
   std::size_t thrown = 0;
-  for (std::size_t at = 0; at < bytes.size(); ++at)
+  const std::size_t step = BURNISH_SANITIZED && GetParam() ? 5 : 1;  // OpenEXR takes sanitizers long
+  for (std::size_t at = 0; at < bytes.size(); at += step)
     for (const char damage : {'\0', '\xff', '\x1b', '9'}) {
       std::string damaged = bytes;
       damaged[at] = damage;
@@ -131,7 +133,7 @@ TEST_P(DamagedSurface, ThrowsOrIsSound) {
         EXPECT_THAT(error.what(), HasSubstr("expected")) << at;
       }
     }
-  EXPECT_GT(thrown, bytes.size() / 4);
+  EXPECT_GT(thrown, bytes.size() / step / 4);
 }
 INSTANTIATE_TEST_SUITE_P(SurfaceFile, DamagedSurface, testing::Bool());
 
