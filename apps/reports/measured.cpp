@@ -22,12 +22,12 @@ namespace burnish::reports {
 
 namespace {
 
-constexpr std::size_t kBytes = 16'384, kFewBytes = 2700;
+constexpr std::size_t kBytes = 16'384, kFewBytes = 2700, kQuickBytes = 1350;
 constexpr int kNodeFetches = 3;  // of nodes, where the page says so
 
 // Of a quick trial few, which are fitted in a tenth of the time.
 std::size_t most_bytes(const Page& page) {
-  return page.options().quick ? kFewBytes : kBytes;
+  return page.options().quick ? kQuickBytes : kBytes;
 }
 
 std::vector<fs::path> rgl_files(const Page& page) {
@@ -178,7 +178,8 @@ void report_incidences(Page& page) {
       const MeasuredNodes unseen = nodes_of(nodes, part);
       const RglTable left(without_incidence(data, k));
       const SymmetrizedBrdf symmetrized(left);
-      const Fit ours = fit_nodes_without(source, part);
+      const Fit ours = quick ? fit_nodes_without(source, part, Budget{.bytes = kQuickBytes})
+                             : fit_nodes_without(source, part);
       const std::array<BrdfRef, 3> models{left, symmetrized, ours.ref()};
       for (std::size_t m = 0; m < models.size(); ++m) {
         const NodeFigures figures = node_figures(unseen, models[m]);
@@ -237,7 +238,7 @@ Table repeat_table(const Scans& scans, bool quick) {
       add(how, std::to_string(made.bytes()), made.ref());
     };
     add_fit("`--budget 2700`", {.bytes = kFewBytes});
-    if (quick) continue;
+    if (quick) break;
     add_fit("`--budget 16K`", {.bytes = kBytes});
     add_fit("`--budget 16K --fetches 6 --smooth auto`",
             {.bytes = kBytes, .fetches = 6, .scattered = {.cross_validate = true}});
@@ -247,10 +248,10 @@ Table repeat_table(const Scans& scans, bool quick) {
 }
 
 // And at the nodes alone.
-Table repeat_nodes_table(const Scans& scans, std::uint64_t bytes) {
+Table repeat_nodes_table(const Scans& scans, std::uint64_t bytes, bool quick) {
   Table table({"nodes of", "nodes", "by its own function", "by the other's", "ours, of the other's function",
                "ours, of the other's nodes"});
-  for (std::size_t to = 0; to < scans.sources.size(); ++to) {
+  for (std::size_t to = 0; to < (quick ? 1 : scans.sources.size()); ++to) {
     const Source& other = scans.sources[1 - to];
     const MeasuredNodes nodes = measured_nodes(scans.sources[to]);
     const Budget budget{.bytes = bytes, .fetches = kNodeFetches};
@@ -275,7 +276,7 @@ void report_repeat(Page& page, const fs::path& data) {
   if (!fs::exists(coarse) || !fs::exists(fine)) return;
   const Scans scans{.files = {fine, coarse}};
   page["repeat"] = repeat_table(scans, page.options().quick).markdown();
-  page["repeat_nodes"] = repeat_nodes_table(scans, most_bytes(page)).markdown();
+  page["repeat_nodes"] = repeat_nodes_table(scans, most_bytes(page), page.options().quick).markdown();
 }
 
 // ---- Formats whose owners interpolate what was measured
@@ -329,7 +330,7 @@ void report_noise(Page& page, const std::optional<fs::path>& data) {
     tell("measured: albedo of " + name);
     const SymmetrizedBrdf function(source.ref());
     const Fit few = fit(source, {.form = Budget{.bytes = kFewBytes}, .score = false}),
-              many = fit(source, {.form = Budget{.bytes = kBytes, .fetches = 2}, .score = false});
+              many = fit(source, {.form = Budget{.bytes = most_bytes(page), .fetches = 2}, .score = false});
     for (const double theta_i : {0, 15, 30, 45, 60}) {
       const Vec3 wi = spherical_direction(radians(theta_i), 0);
       const DirectionalAlbedo own = directional_albedo(function, wi, 2e-3);
@@ -365,15 +366,15 @@ void report_order(Page& page, const fs::path& data) {
   const Source source = open_source(file.string(), {});
   const Scorer scorer(source.ref());
   Table table({"fit", "bytes", "psnr", "ssim", "relative", "log_cos", "rms_log", "rms"});
-  std::vector<std::size_t> budgets{kFewBytes};
-  if (!page.options().quick) budgets.push_back(kBytes);
+  std::vector<std::size_t> budgets{kFewBytes, kBytes};
+  if (page.options().quick) budgets = {kQuickBytes};
   for (const std::size_t bytes : budgets)
     for (const bool symmetrize : {true, false}) {
       const Fit made = fit(source, {.form = Budget{.bytes = bytes},
                                     .target = FitTarget::function,
                                     .symmetrize = symmetrize,
                                     .score = false});
-      table.add(joined({fmt::format("`--budget {}{}`", bytes == kBytes ? "16K" : "2700",
+      table.add(joined({fmt::format("`--budget {}{}`", bytes == kBytes ? "16K" : std::to_string(bytes),
                                     symmetrize ? "" : " --no-symmetrize"),
                         std::to_string(made.bytes())},
                        figures_of(scorer.score(made.ref()))));
