@@ -8,8 +8,9 @@
 # make studio the library as WebAssembly, its npm package and the page in build/studio; make studio-test tests them
 # make bench, make compile-cost, make fuzz, make damaged, make report, make cost-report, make sampling-report, make area-light-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
+# make site   all documents as a searchable site in build/site, the studio beside them where build/studio is
 # make cluster-test  a batch on a real Slurm of two nodes on this machine, killed now and then
-.PHONY: check test-announcement cluster-test compile-cost demo test build reports python deb wheel sdist npm source-archive packaging-deps release release-check studio studio-test build-deps deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report area-light-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api options
+.PHONY: check test-announcement cluster-test compile-cost demo test build reports python deb wheel sdist npm source-archive packaging-deps release release-check studio studio-test build-deps deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report area-light-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api options site site-check
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -194,6 +195,21 @@ docs-check:
 	@tests/docs/comments.py --self-test
 	@tests/docs/comments.py
 	@docs/api.py --check
+
+# The site of docs/, with its own packages of PyPI. site-check asks its search and looks for violations of axe's rules.
+SITE := build/venv-site
+$(SITE)/installed: docs/site/requirements.txt
+	@[ -x $(SITE)/bin/pip ] || python3 -m venv $(SITE)
+	@$(SITE)/bin/pip --disable-pip-version-check --quiet install --only-binary :all: -r $<
+	@touch $@
+
+site: $(SITE)/installed
+	@$(SITE)/bin/python docs/make_site.py
+	@command -v node > /dev/null && node tests/docs/search.mjs build/site || \
+	  { status=$$?; command -v node > /dev/null && exit $$status; echo "site: SKIPPED: node is missing, so nobody asked its search"; }
+
+site-check: site
+	@tests/docs/axe.sh build/site
 
 include-check:
 	@tests/includes/check.py
