@@ -5,6 +5,8 @@
   column 120 are free.
 - Links lead to files of the tree, anchors to headings.
 - A page of docs/guide has at most 120 lines, one of docs/notes at most 85, which is two screens.
+- Sentences of docs/guide have at most 30 words, and half of a page's at most 16.
+- tests/docs/questions.md has five questions for each page of docs/guide, and the words there that answer them.
 - No page has a dagger: a figure that no command prints is left out.
 - Every picture of docs/figures stands in a page.
 
@@ -12,12 +14,16 @@ Prints what is wrong as FILE:LINE: MESSAGE and exits with 1 if anything is."""
 import functools
 import pathlib
 import re
+import statistics
 import subprocess
 import sys
 import urllib.parse
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 COLUMNS = 120
+SENTENCE_WORDS, MEDIAN_WORDS = 30, 16
+QUESTIONS = ROOT / "tests/docs/questions.md"
+QUESTIONS_A_PAGE = 5
 MOST_LINES = {"docs/guide/": 120, "docs/notes/": 85}
 LINK = re.compile(r"\]\(\s*<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)|^\s*\[[^\]]+\]:\s+(\S+)|(?:src|href)=\"([^\"]+)\"")
 
@@ -103,6 +109,63 @@ def check(path):
     for folder, most in MOST_LINES.items():
         if name.startswith(folder) and count > most:
             yield count, f"{count} lines, a page of {folder} has at most {most}"
+    if name.startswith("docs/guide/"):
+        yield from check_sentences(path)
+
+
+def sentences(path):
+    """(line, words) of each sentence that stands in a paragraph or item; code counts as a word."""
+    first, text = 0, []
+
+    def split():
+        joined = re.sub(r"`[^`]*`", "code", " ".join(text))
+        joined = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", joined)
+        for sentence in re.split(r"(?<=[.!?])[\"*)]*\s+(?=[\w\"(*\[])", joined):
+            words = [word for word in sentence.split() if re.search(r"\w", word)]
+            if words:
+                yield first, len(words)
+    for number, line, code in lines_of(path):
+        line = line.strip()
+        item = re.match(r"([-*+]|\d+\.)\s+", line)
+        aside = code or not line or line.startswith(("|", "#", "![", "<!--"))
+        if aside or item:
+            yield from split()
+            text = []
+        if not aside:
+            first = first if text else number
+            text.append(line[item.end():] if item else line)
+    yield from split()
+
+
+def check_sentences(path):
+    """(line, message) of sentences that are too long."""
+    found = list(sentences(path))
+    for number, words in found:
+        if words > SENTENCE_WORDS:
+            yield number, f"a sentence of {words} words, at most {SENTENCE_WORDS}"
+    median = statistics.median(words for _, words in found)
+    if median > MEDIAN_WORDS:
+        yield 1, f"half of the sentences have {median:g} words or more, at most {MEDIAN_WORDS}"
+
+
+def check_questions():
+    """(line, message) of what is wrong in QUESTIONS: items "- Question? _answer_" below "## PAGE" of the guide. The
+    answer stands in the page, so that the page alone answers it."""
+    asked, text = {}, ""
+    for number, line, _ in lines_of(QUESTIONS):
+        if line.startswith("## "):
+            page = ROOT / "docs/guide" / line.removeprefix("## ")
+            text = " ".join(page.read_text(encoding="utf-8").split()) if page.exists() else ""
+            asked[page.name] = 0
+        elif item := re.match(r"- .+\? _(.+)_$", line):
+            asked[page.name] += 1
+            if item.group(1) not in text:
+                yield number, f"{page.name} does not say '{item.group(1)}'"
+        elif line.startswith("- "):
+            yield number, "expected '- Question? _answer_'"
+    for page in sorted((ROOT / "docs/guide").glob("*.md")):
+        if asked.get(page.name, 0) < QUESTIONS_A_PAGE:
+            yield 1, f"{page.name}: {asked.get(page.name, 0)} questions, at least {QUESTIONS_A_PAGE}"
 
 
 def unseen_figures(pages):
@@ -115,6 +178,7 @@ def main():
     pages = [pathlib.Path(name).resolve() for name in sys.argv[1:]] or documents()
     wrong = [f"{path.relative_to(ROOT)}:{number}: {message}" for path in pages for number, message in check(path)]
     if not sys.argv[1:]:
+        wrong += [f"{QUESTIONS.relative_to(ROOT)}:{number}: {message}" for number, message in check_questions()]
         wrong += [f"{figure.relative_to(ROOT)}: stands in no page" for figure in unseen_figures(pages)]
     print("\n".join(wrong) if wrong else f"{len(pages)} documents, nothing wrong")
     return 1 if wrong else 0
