@@ -3,7 +3,7 @@
 
 - Pages lie in the site as in the repository, without the folder docs; README.md is the first page.
 - docs/api.md becomes a page a topic (TOPICS), and its links follow.
-- Notebooks (docs/notebooks/*.py) are executed first, and are pages with what they printed and drew.
+- Notebooks (docs/notebooks) are executed first, by build/venv, and are pages with what they printed and drew.
 - Symbols of docs/notation.md get a hover card wherever they stand in text.
 - Files that pages link to and that are no pages, such as sources, go along as plain text.
 - The studio goes along where build/studio is.
@@ -11,6 +11,8 @@
 MkDocs is strict: a link or a heading that leads nowhere is an error. Needs what docs/site/requirements.txt lists.
 Writes FOLDER (build/site), from what it stages in build/site-pages."""
 import argparse
+import base64
+import json
 import pathlib
 import re
 import shutil
@@ -104,8 +106,9 @@ def api_pages():
 class Links:
     """Turns links between files of the repository into links between pages of the site."""
 
-    def __init__(self, pages):
+    def __init__(self, pages, notebooks):
         self.pages = set(pages)
+        self.notebooks = notebooks  # whether they are pages
         self.extra = set()  # files that pages link to
         self.api = {slug(h): name for name, text in api_pages().items() for h in headings(text)}
 
@@ -117,6 +120,8 @@ class Links:
             aim = aim / "README.md"
         if not aim.exists():
             sys.exit(f"{aim.relative_to(ROOT)}: expected a file that a page links to, found none")
+        if self.notebooks and aim.suffix == ".ipynb":
+            return f"notebooks/{aim.stem}.md", anchor
         if aim not in self.pages:
             self.extra.add(aim)
         return place_of(aim), anchor
@@ -206,48 +211,83 @@ def navigation(titles, notebooks, studio):
     return menu
 
 
+def notebook_page(book, folder, rewrite):
+    """The Markdown of an executed notebook, rewrite() of its texts; its pictures are written to a folder."""
+    parts, pictures = [], 0
+    for cell in book["cells"]:
+        text = "".join(cell["source"])
+        parts.append(rewrite(text) if cell["cell_type"] == "markdown" else f"```python\n{text}\n```")
+        for output in cell.get("outputs", []):
+            data = output.get("data", {})
+            if "image/png" in data:
+                pictures += 1
+                picture = folder / f"{folder.name}-{pictures}.png"
+                picture.parent.mkdir(parents=True, exist_ok=True)
+                picture.write_bytes(base64.b64decode(data["image/png"]))
+                parts.append(f"![What the cell above draws]({folder.name}/{picture.name})")
+            elif said := "".join(output.get("text", data.get("text/plain", ""))).rstrip():
+                parts.append(f"```text\n{said}\n```")
+    return "\n\n".join(parts) + "\n"
+
+
 def execute_notebooks():
-    """[(title, place, text)] of docs/notebooks/*.py, executed; pictures go to the stage."""
-    if not (ROOT / "docs/notebooks/run.py").exists():
-        return []
-    sys.path.insert(0, str(ROOT / "docs/notebooks"))
-    import run
-    return run.pages(STAGE / "notebooks")
+    """Executes docs/notebooks by build/venv into build/notebooks; false where that lacks what they need."""
+    python = ROOT / "build/venv/bin/python"
+    if not python.exists() or subprocess.run([python, "-c", "import burnish, matplotlib, nbclient, ipykernel"],
+                                             capture_output=True).returncode:
+        print("docs/make_site.py: build/venv cannot run notebooks, so the site has none (`make python` installs it)")
+        return False
+    if subprocess.run([python, ROOT / "docs/notebooks/run.py", "--out", ROOT / "build/notebooks"]).returncode:
+        sys.exit(1)
+    return True
+
+
+def notebook_pages(links):
+    """[(title, place, text)] of the executed notebooks."""
+    found = []
+    for file in tracked("docs/notebooks/*.ipynb"):
+        place = f"notebooks/{file.stem}.md"
+        book = json.loads((ROOT / "build/notebooks" / file.name).read_text(encoding="utf-8"))
+        text = notebook_page(book, STAGE / "notebooks" / file.stem,
+                             lambda part, file=file, place=place: links.rewrite(part, file, place))
+        found.append((next(headings(text)), place, text))
+    return found
+
+
+def copy_to_stage(aim, place):
+    path = STAGE / place
+    path.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(aim, path)
 
 
 def stage(with_notebooks):
     """Writes all pages to STAGE and returns the menu."""
+    with_notebooks = with_notebooks and execute_notebooks()
     shutil.rmtree(STAGE, ignore_errors=True)
     pages = [p for p in tracked("*.md") if p != ROOT / "docs/api.md" and p.name != "questions.md"]
-    links, cards = Links(pages), hover_cards()
+    links, cards = Links(pages, with_notebooks), hover_cards()
     titles = {p: next(headings(p.read_text(encoding="utf-8")), p.stem) for p in pages}
     texts = {place_of(p): links.rewrite(p.read_text(encoding="utf-8"), p, place_of(p)) for p in pages}
     for name, text in api_pages().items():
         texts[f"api/{name}.md"] = links.rewrite(text, ROOT / "docs/api.md", f"api/{name}.md")
     texts["api/index.md"] += "".join(f"- [{title}]({name}.md)\n" for name, (title, _) in TOPICS.items())
     texts = {place: as_python_markdown(text) for place, text in texts.items()}
-    notebooks = []
-    if with_notebooks:
-        for title, place, text in execute_notebooks():
-            notebooks.append((title, place))
-            texts[place] = text
+    notebooks = notebook_pages(links) if with_notebooks else []
+    texts |= {place: text for _, place, text in notebooks}
     for place, text in texts.items():
         path = STAGE / place
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text + "\n" + cards + "\n", encoding="utf-8")
     for aim in sorted(links.extra) + tracked("docs/figures/*"):
-        path = STAGE / place_of(aim)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(aim, path)
-    (STAGE / "site").mkdir(exist_ok=True)
-    for aim in ["docs/site/site.css", "docs/site/site.js", "web/studio/icon.svg"]:
-        shutil.copy(ROOT / aim, STAGE / "site")
+        copy_to_stage(aim, place_of(aim))
+    for name in ["docs/site/site.css", "docs/site/site.js", "web/studio/icon.svg"]:
+        copy_to_stage(ROOT / name, f"site/{pathlib.Path(name).name}")
     studio = (ROOT / "build/studio/index.html").exists()
     if studio:
         shutil.copytree(ROOT / "build/studio", STAGE / "studio", ignore=shutil.ignore_patterns("*.md"))
     else:
         print("docs/make_site.py: build/studio is missing, so the site has no studio (`make studio` makes it)")
-    return navigation(titles, notebooks, studio)
+    return navigation(titles, [(title, place) for title, place, _ in notebooks], studio)
 
 
 def build(menu, out):
