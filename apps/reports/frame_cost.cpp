@@ -1,11 +1,17 @@
 // Milliseconds a frame of what `burnish fit` gives and of what it is compared with.
+#include <algorithm>
 #include <deque>
+#include <iterator>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include <burnish/error.h>
 #include <burnish/factors/fetches.h>
+#include <burnish/file.h>
 #include <burnish/fitting/fit.h>
 #include <burnish/io/open_source.h>
 #include <burnish/math/random.h>
@@ -63,6 +69,14 @@ Fitted fit_by_command(const Source& source, std::optional<std::uint64_t> bytes, 
 
 constexpr const char* kAnisotropic = "ggx:alpha_x=0.1,alpha_y=0.3,f0=0.8,kd=0.3";
 
+constexpr int kLights[] = {1, 4, 16}, kRepetitions = 11;
+
+// The first of the report of costs.
+Source source_of(ReportOptions options) {
+  options.quick = true;
+  return std::move(cost_sources(options).front());
+}
+
 // What is compared.
 struct Models {
   std::deque<Fitted> fits;
@@ -116,27 +130,127 @@ std::vector<FrameMaterial> materials_of(const Models& models) {
   return materials;
 }
 
-}  // namespace
+// The page has a column for each kind of device, and one run measures one of them. So a run writes its rows to
+// frame-cost-DEVICE-KIND.csv, and the page is joined from the rows of all devices that there are.
+struct Device {
+  const char* name;   // in names of files
+  const char* title;  // above its columns
+};
+constexpr Device kGpu{"gpu", "GPU"}, kProcessor{"processor", "processor"};
 
-void report_frame_cost(const ReportOptions& options) {
-  const int repetitions = options.quick ? 1 : 11;
-  const std::vector<int> lights = options.quick ? std::vector{1} : std::vector{1, 4, 16};
+// The cells of a line of commas; a cell in quotes may hold commas, and quotes twice.
+std::vector<std::string> cells_of(std::string_view line) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') {
+      if (quoted && line.substr(i + 1).starts_with('"'))
+        cells.back() += line[i++];
+      else
+        quoted = !quoted;
+    } else if (line[i] == ',' && !quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += line[i];
+    }
+  }
+  return cells;
+}
+
+// The rows of a device's file below its head; none where it was not measured.
+std::vector<std::vector<std::string>> rows_of(const fs::path& folder, const Device& device,
+                                              const char* kind) {
+  const fs::path file = folder / fmt::format("frame-cost-{}-{}.csv", device.name, kind);
+  std::vector<std::vector<std::string>> rows;
+  if (!fs::exists(file)) return rows;
+  const FileBytes bytes = read_file(file);
+  std::string_view text = bytes.text();
+  for (bool head = true; !text.empty(); head = false) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(text.size(), line.size() + 1));
+    if (!head) rows.push_back(cells_of(line));
+  }
+  return rows;
+}
+
+// Both devices' rows side by side, by what the first cell names. Of a pair of cells, "least (median)" and the ratio
+// to GGX, the page has "least (ratio)"; the medians stay in the files.
+Table beside_each_other(const fs::path& folder, const char* kind, const std::vector<std::string>& columns) {
+  std::vector<std::string> names, head{"material"};
+  std::map<std::string, std::vector<std::string>> cells;
+  for (const Device& device : {kGpu, kProcessor}) {
+    const auto rows = rows_of(folder, device, kind);
+    if (rows.empty()) continue;
+    for (const std::string& column : columns) head.push_back(fmt::format("{}, {}", device.title, column));
+    for (const auto& row : rows) {
+      if (!cells.contains(row.front())) names.push_back(row.front());
+      std::vector<std::string>& line = cells[row.front()];
+      line.resize(head.size() - columns.size() - 1, "");  // what another device did not draw
+      for (std::size_t i = 1; i + 1 < row.size(); i += 2)
+        line.push_back(fmt::format("{} ({})", row[i].substr(0, row[i].find(' ')), row[i + 1]));
+    }
+  }
+  Table table(head);
+  for (const std::string& name : names) {
+    cells[name].resize(head.size() - 1, "");
+    table.add(joined({name}, cells[name]));
+  }
+  return table;
+}
+
+// What drew the rows, a row for each device, and the source of the fits. Throws Error where nothing was measured.
+Table drawers(const fs::path& folder, std::string& source) {
+  Table table({"drawn by", "seconds to measure", "on", "at commit"});
+  for (const Device& device : {kGpu, kProcessor})
+    for (const auto& row : rows_of(folder, device, "run")) {
+      source = row.at(4);
+      table.add({row.begin(), row.begin() + 4});
+    }
+  if (table.empty())
+    throw Error::in_file(folder.string(), "frame-cost-gpu-run.csv or frame-cost-processor-run.csv", "none");
+  return table;
+}
+
+// Measures on the device that draws here, and writes its rows.
+void measure_frames(const ReportOptions& options, const Page& page) {
+  const int repetitions = options.quick ? 1 : kRepetitions;
+  const std::vector<int> lights =
+      options.quick ? std::vector{1} : std::vector<int>(std::begin(kLights), std::end(kLights));
+  const Stopwatch watch;
   const GlContext context(GlDevice::gpu_first);
-  Page page(options, context.in_software() ? "frame-cost" : "frame-cost-gpu", "frame-cost");
-  ReportOptions of_one = options;
-  of_one.quick = true;
-  const Source source = std::move(cost_sources(of_one).front());
+  const Device& device = context.in_software() ? kProcessor : kGpu;
+  const Source source = source_of(options);
   const Models models = models_of(source, options.quick);
   const std::vector<FrameMaterial> materials = materials_of(models);
   for (const FrameMaterial& material : materials) check_picture(material);
-  page["source"] = source.name;
+  const auto write = [&](const char* kind, const Table& rows) {
+    page.write_rows(fmt::format("{}-{}", device.name, kind), rows);
+  };
+  write("times", frame_times("frame-cost", "GGX", materials, lights, repetitions));
+  tell("frame-cost: evaluations");
+  write("rates", evaluation_rates("GGX", materials, repetitions));
+  Table run({"drawn by", "seconds", "machine", "commit", "source"});
+  run.add(
+      {drawn_by(context), fmt::format("{:.0f}", watch.seconds()), processor(), options.commit, source.name});
+  write("run", run);
+}
+
+}  // namespace
+
+void report_frame_cost(const ReportOptions& options) {
+  Page page(options, "frame-cost");
+  if (options.section != "page") measure_frames(options, page);
+  std::vector<std::string> columns;
+  for (const int count : kLights) {
+    if (options.quick && count > 1) continue;
+    columns.push_back(fmt::format("{} light{}", count, count == 1 ? "" : "s"));
+  }
   page["vertices"] = std::to_string(kFrameVertices);
   page["size"] = std::to_string(kFrameSize);
-  page["repetitions"] = std::to_string(repetitions);
-  page["renderer"] = drawn_by(context);
-  page["times"] = frame_times("frame-cost", "GGX", materials, lights, repetitions).markdown();
-  tell("frame-cost: evaluations");
-  page["rates"] = evaluation_rates("GGX", materials, repetitions).markdown();
+  page["repetitions"] = std::to_string(options.quick ? 1 : kRepetitions);
+  page["drawers"] = drawers(options.folder, page["source"]).markdown();
+  page["times"] = beside_each_other(options.folder, "times", columns).markdown();
+  page["rates"] = beside_each_other(options.folder, "rates", {"billions a second"}).markdown();
   page.write();
 }
 

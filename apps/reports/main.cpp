@@ -43,7 +43,7 @@ const Report kReports[] = {
      {"precision", "webgl", "cost", "environment"}},
     {"openpbr", "the OpenPBR fit beside the best of 200 random starts", report_openpbr, {"rgl", "merl"}},
     {"surfaces", "surfaces: milliseconds a frame beside a uniform model, and mip levels", report_surfaces},
-    {"frame-cost", "milliseconds a frame beside other materials", report_frame_cost},
+    {"frame-cost", "milliseconds a frame beside other materials", report_frame_cost, {"page"}},
 };
 
 void add_report(CLI::App& app, const Report& report) {
