@@ -77,6 +77,7 @@ test: test-announcement test-deps format-check docs-check include-check
 	@tests/web/check.sh --skip-offline > build/web.log 2>&1 & web=$$!; \
 	BURNISH_WERROR=$(WERROR) python/check.sh --skip-offline && tests/web/package.sh --if-built; others=$$?; \
 	wait $$web; web=$$?; cat build/web.log; exit $$((others || web))
+	@tests/docs/site.sh --skip-offline --no-notebooks
 	@tests/cluster/run.py $(BURNISH) --if-there
 
 python: test-deps build
@@ -196,17 +197,9 @@ docs-check:
 	@tests/docs/comments.py
 	@docs/api.py --check
 
-# The site of docs/, with its own packages of PyPI. site-check asks its search and looks for violations of axe's rules.
-SITE := build/venv-site
-$(SITE)/installed: docs/site/requirements.txt
-	@[ -x $(SITE)/bin/pip ] || python3 -m venv $(SITE)
-	@$(SITE)/bin/pip --disable-pip-version-check --quiet install --only-binary :all: -r $<
-	@touch $@
-
-site: $(SITE)/installed
-	@$(SITE)/bin/python docs/make_site.py
-	@command -v node > /dev/null && node tests/docs/search.mjs build/site || \
-	  { status=$$?; command -v node > /dev/null && exit $$status; echo "site: SKIPPED: node is missing, so nobody asked its search"; }
+# The site of docs/, with its own packages of PyPI. site-check looks for violations of axe's rules in a browser.
+site:
+	@tests/docs/site.sh
 
 site-check: site
 	@tests/docs/axe.sh build/site

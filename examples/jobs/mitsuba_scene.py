@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A Mitsuba scene with a burnish material: mitsuba_scene.py paint.burnish [-o teapot.png] [--samples N].
+"""A Mitsuba scene with a burnish material: mitsuba_scene.py paint.burnish [-o scene.png] [--samples N].
 
 The material is on a sphere under a window and a dim sky. Needs `pip install burnish mitsuba`. Prints the mean
 of the picture, and how far it is from a picture of the same scene with half as many samples: its noise."""

@@ -6,6 +6,7 @@
 - Links lead to files of the tree, anchors to headings.
 - A page of docs/guide has at most 120 lines, one of docs/notes at most 85, which is two screens.
 - Sentences of docs/guide have at most 30 words, and half of a page's at most 16.
+- Neither docs/guide nor docs/notes uses a word of comments.PRIVATE_WORDS, which are not the field's.
 - tests/docs/questions.md has five questions for each page of docs/guide, and the words there that answer them.
 - No page has a dagger: a figure that no command prints is left out.
 - Every picture of docs/figures stands in a page.
@@ -18,6 +19,8 @@ import statistics
 import subprocess
 import sys
 import urllib.parse
+
+import comments
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 COLUMNS = 120
@@ -106,6 +109,8 @@ def check(path):
                 yield number, wrong
         if "†" in re.sub(r"`[^`]*`", "", text):
             yield number, "a dagger; leave out a figure that no command prints"
+        if name.startswith(tuple(MOST_LINES)) and (word := comments.PRIVATE_WORDS.search(text)):
+            yield number, f"'{word.group(0)}' is not the field's word"
     for folder, most in MOST_LINES.items():
         if name.startswith(folder) and count > most:
             yield count, f"{count} lines, a page of {folder} has at most {most}"
