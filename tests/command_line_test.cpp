@@ -552,6 +552,65 @@ TEST(CommandLine, ExplainsItsFormatsAndItself) {
   EXPECT_EQ(burnish("--json help formats").status, 2);  // of a verb it stands behind it
 }
 
+// A window's sheet: what it reflects, and another value of what passes through.
+std::string sheet_xml() {
+  const auto block = [](std::string_view direction, std::string_view band, double value) {
+    return fmt::format(
+        "<WavelengthData><Wavelength>{}</Wavelength><WavelengthDataBlock><WavelengthDataDirection>{}"
+        "</WavelengthDataDirection><ColumnAngleBasis>One</ColumnAngleBasis><RowAngleBasis>One</RowAngleBasis>"
+        "<ScatteringData>{}</ScatteringData></WavelengthDataBlock></WavelengthData>",
+        band, direction, value);
+  };
+  return "<WindowElement><Optical><Layer><DataDefinition><IncidentDataStructure>Columns</"
+         "IncidentDataStructure>"
+         "<AngleBasis><AngleBasisName>One</AngleBasisName><AngleBasisBlock><nPhis>1</nPhis><ThetaBounds>"
+         "<LowerTheta>0</LowerTheta><UpperTheta>90</UpperTheta></ThetaBounds></AngleBasisBlock></AngleBasis>"
+         "</DataDefinition>" +
+         block("Reflection Front", "Visible", 0.1) + block("Transmission Front", "Visible", 0.2) +
+         block("Transmission Front", "NIR", 0.3) + "</Layer></Optical></WindowElement>";
+}
+
+TEST(CommandLine, ReadsEachPartAndBandOfASurface) {
+  const TemporaryFolder folder("parts");
+  const std::string file = (folder.path / "sheet.xml").string(),
+                    model = (folder.path / "sheet.burnish").string();
+  write_then_rename(file, sheet_xml());
+  const std::string info = burnish("info " + file).output;
+  EXPECT_THAT(info, HasSubstr("part         reflection-front (Visible): read\n"));
+  EXPECT_THAT(info, HasSubstr("part         transmission-front (NIR): left out\n"));
+  const auto json = nlohmann::json::parse(burnish("info --json --band nir " + file).output);
+  EXPECT_EQ(json.at("part"), "transmission-front");
+  EXPECT_EQ(json.at("band"), "NIR");
+  EXPECT_EQ(json.at("parts").size(), 3u);
+  EXPECT_EQ(json.at("parts").at(2).at("read"), true);
+
+  // what the file has not is one line, and no part a usage error
+  const Outcome missing = burnish("info --part transmission-back " + file);
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_THAT(missing.output, HasSubstr("expected part transmission-back, found reflection-front (Visible), "
+                                        "transmission-front (Visible), transmission-front (NIR)\n"));
+  EXPECT_EQ(burnish("info --part transmission " + file).status, 2);
+
+  // wo lies below the surface, of the file and of a model fitted to it
+  const auto values = [&](const std::string& brdf) {
+    return run(fmt::format(
+                   "printf 'theta_i,phi_i,theta_o,phi_o\\n30,0,140,20\\n30,0,40,20\\n' | '{}' eval {} -",
+                   BURNISH_CLI, brdf))
+        .output;
+  };
+  EXPECT_THAT(values(file + " --part transmission-front"), HasSubstr("30,0,140,20,0.2"));
+  EXPECT_THAT(values(file + " --part transmission-front"), HasSubstr("30,0,40,20,0\n"));
+  EXPECT_THAT(values(file), HasSubstr("30,0,40,20,0.1"));
+  const Outcome fitted =
+      burnish(fmt::format("fit {} --part transmission-front --budget 300 -o {}", file, model));
+  EXPECT_EQ(fitted.status, 0) << fitted.output;
+  EXPECT_THAT(values(model), HasSubstr("30,0,140,20,0.2"));
+  EXPECT_THAT(values(model), HasSubstr("30,0,40,20,0\n"));
+  EXPECT_THAT(burnish("info " + model).output, HasSubstr("part         transmission-front (Visible)\n"));
+  EXPECT_THAT(burnish("compare " + file + " " + model).output, HasSubstr("expected reflection as in"));
+  EXPECT_EQ(burnish("compare " + file + " " + model + " --part transmission-front").status, 0);
+}
+
 TEST(CommandLine, TakesTheLightOfSpectraFromAName) {
   const TemporaryFolder folder("illuminants");
   const std::string out = folder.path.string();

@@ -72,6 +72,7 @@ void print_quality(const MeasurementQuality& quality) {
 void add_quality(Measurement& measurement, const Candidate& reference, const Scorer& scorer,
                  const CompareArguments& arguments) {
   if (arguments.repeat.empty()) {
+    if (reference.source().findings.transmits()) return;  // exchanged, the light comes from the other side
     measurement.quality = quality_by_exchange(scorer, reference.source().ref(), measurement.nodes);
     return;
   }
@@ -143,6 +144,17 @@ void print_compared(std::span<const ComparedFigures> figures, const Measurement*
                100 * first.unknown_fraction, first.unknown_pixels);
 }
 
+// Reflection is not compared with transmission, but formulas with both.
+void check_same_kind(const Source& reference, const Source& model) {
+  const auto kind = [](const Source& source) {
+    return source.findings.transmits() ? "transmission" : "reflection";
+  };
+  if (!std::holds_alternative<AnalyticBrdf>(model.brdf) &&
+      model.findings.transmits() != reference.findings.transmits())
+    throw Error::in_file(model.name, fmt::format("{} as in {}", kind(reference), reference.name),
+                         kind(model));
+}
+
 void compare(const CompareArguments& arguments) {
   if (!arguments.folder.empty()) {
     check_folder_name(arguments.folder);
@@ -156,6 +168,7 @@ void compare(const CompareArguments& arguments) {
   std::vector<ComparedModel> models;
   for (const std::string& spec : arguments.models) {
     sources.push_back(open_source(spec, arguments.reference.options));
+    check_same_kind(opened, sources.back());
     models.push_back(candidates.emplace_back(sources.back(), !arguments.no_symmetrize).compared(spec));
   }
 

@@ -3,7 +3,8 @@
 namespace burnish::cli {
 
 Candidate::Candidate(const Source& source, bool symmetrize) : source_(source) {
-  if (symmetrize && !(model() && model()->reciprocal())) symmetrized_.emplace(source_.ref());
+  if (symmetrize && !source.findings.transmits() && !(model() && model()->reciprocal()))
+    symmetrized_.emplace(source_.ref());
 }
 
 BrdfRef Candidate::ref() const {

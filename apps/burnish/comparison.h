@@ -8,8 +8,8 @@
 
 namespace burnish::cli {
 
-/// An opened BRDF, made reciprocal like the others unless it is so by construction. Refers to the source, which must
-/// outlive it.
+/// An opened BRDF, made reciprocal like the others unless it is so by construction or transmits. Refers to the source,
+/// which must outlive it.
 class Candidate {
  public:
   Candidate(const Source& source, bool symmetrize);

@@ -78,6 +78,14 @@ struct Values {
   std::vector<double> errors;       // [pair], or nothing
 };
 
+/// The pairs as the source takes them. Transmission leaves below the surface: its wo has z < 0 in what users write, and
+/// is mirrored through the surface in what is evaluated. wo of a transmission above the surface is below it then.
+std::vector<DirectionPair> as_evaluated(const Source& source, std::vector<DirectionPair> pairs) {
+  if (source.findings.transmits())
+    for (DirectionPair& pair : pairs) pair.wo.z = -pair.wo.z;
+  return pairs;
+}
+
 Values values_at(const Source& source, std::span<const DirectionPair> pairs, bool with_errors) {
   const Progress progress("evaluating");
   const Uncertain uncertain = with_errors ? uncertain_of(source) : Uncertain{};
@@ -160,7 +168,7 @@ void evaluate(const EvalArguments& arguments) {
   }
   const Source source = arguments.source.open();
   DirectionTable directions = parse_directions(read_directions(arguments.directions));
-  const Values values = values_at(source, directions.pairs, arguments.error);
+  const Values values = values_at(source, as_evaluated(source, directions.pairs), arguments.error);
   const std::size_t pairs = directions.pairs.size();
   if (!arguments.out.empty() && !arguments.with_directions) directions = {};
   const std::vector<std::string> columns = columns_of(source, directions, arguments.error);
@@ -188,6 +196,7 @@ void add_eval_command(CLI::App& app) {
       app.add_subcommand("eval", "Evaluate a BRDF at direction pairs: f_r in 1/sr, without the cosine");
   verb->footer(
       "The header of DIRECTIONS is wi_x,wi_y,wi_z,wo_x,wo_y,wo_z or theta_i,phi_i,theta_o,phi_o (degrees). "
+      "wo of a transmission lies below the surface: wo_z < 0, theta_o from 90 to 180. "
       "On the terminal directions stand beside the values, in a file where asked; nan stands where a "
       "measurement knows nothing.\n"
       "Examples: burnish eval paint.exr directions.csv -o values.csv --with-directions\n"

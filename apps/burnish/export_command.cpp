@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -82,6 +83,12 @@ ExportedFiles exported_model(const ExportArguments& arguments, const Source& sou
         fmt::format("--area: expected --to {} with it, found others", targets_that(has_half_products)));
   if (options.name.empty()) options.name = name_of(arguments.model);
   const FactoredBrdf brdf = to_model(source).brdf;
+  if (source.findings.transmits())
+    fmt::print(
+        stderr,
+        "burnish: {}: warning: The model is transmission: what is exported takes wo mirrored through the "
+        "surface.\n",
+        arguments.model);
   options.environment = environment_of(arguments.environment);
   return export_model(brdf, options);
 }

@@ -58,6 +58,10 @@ void print_findings(const Source& source, const std::vector<std::string>& warnin
                                                     : fmt::format(", {} to {} nm", findings.lambda_nm.front(),
                                                                   findings.lambda_nm.back())));
   print_line("material", source.ref().isotropic() ? "isotropic" : "anisotropic");
+  for (const BsdfBlock& block : findings.blocks)
+    print_line("part",
+               fmt::format("{}: {}", to_string(block), block == findings.block ? "read" : "left out"));
+  if (findings.blocks.empty() && findings.block) print_line("part", to_string(*findings.block));
   for (const std::string& convention : findings.conventions) print_line("convention", convention);
   for (const std::string& warning : warnings) print_line("warning", warning);
   if (!findings.left_out.empty())
@@ -106,7 +110,7 @@ void print_text(const SourceReport& report, const std::optional<NodesKnown>& nod
   const auto& [source, albedos, reciprocity, model, mirror_asymmetry, warnings] = report;
   print_findings(source, warnings, nodes);
   for (const auto& [theta_i, phi_i, albedo] : albedos)
-    print_line("albedo",
+    print_line(source.findings.transmits() ? "transmitted" : "albedo",
                fmt::format("{} at theta_i = {:.0f}{} degrees{}{}", fmt::join(shown(albedo.albedo), " "),
                            degrees(theta_i), phi_i > 0 ? fmt::format(", phi_i = {:.0f}", degrees(phi_i)) : "",
                            albedo.unknown_fraction > 0 ? fmt::format(", {:.1f} % of the hemisphere unknown",
@@ -116,7 +120,9 @@ void print_text(const SourceReport& report, const std::optional<NodesKnown>& nod
   print_line(
       "reciprocity",
       fmt::format("mean relative asymmetry {:.4g} over {} pairs{}", reciprocity.mean, reciprocity.pairs,
-                  model && !model->reciprocal() ? ": the model tells the directions apart" : ""));
+                  source.findings.transmits()     ? ": exchanged, the light comes from the other side"
+                  : model && !model->reciprocal() ? ": the model tells the directions apart"
+                                                  : ""));
   if (mirror_asymmetry)
     print_line("mirror", fmt::format("{:.2f} % from its mirror image in the plane of incidence, on average",
                                      100 * std::expm1(*mirror_asymmetry)));

@@ -1,6 +1,8 @@
 #include "source_arguments.h"
 
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -8,6 +10,7 @@
 #include <burnish/io/illuminant.h>
 
 #include "progress.h"
+#include "usage.h"
 
 namespace burnish::cli {
 
@@ -63,8 +66,19 @@ void add_open_options(CLI::App& verb, OpenOptions& options) {
       ->excludes(cosine_o);
   cosine_o->excludes(cosine);
   verb.add_flag("!--keep-negatives", options.clamp_negatives, "Leaves values below zero as they are.");
-  verb.add_flag("--back", options.back_side,
-                "Reads the back side's reflection of Klems files and tensor trees.");
+  auto* back = verb.add_flag("--back", options.back_side,
+                             "Reads the back side's reflection of Klems files and tensor trees.");
+  std::vector<std::string> parts;
+  for (const BsdfPart part : kBsdfParts) parts.emplace_back(to_string(part));
+  verb.add_option_function<std::string>(
+          "--part", [&options](const std::string& name) { options.part = find_bsdf_part(name); },
+          "Reads this part of a file that has several; `burnish info` names them.")
+      ->check(one_of(parts))
+      ->excludes(back);
+  verb.add_option("--band", options.band,
+                  "Reads this band of a file that has several, such as Visible, Solar, NIR or CIE-XYZ.");
+  verb.add_flag("--scale-to-tis", options.scale_to_tis,
+                "Scales each incidence of a Zemax file to the integral that its TIS says.");
 }
 
 }  // namespace burnish::cli

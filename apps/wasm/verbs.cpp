@@ -109,10 +109,10 @@ Json summary_of(const Opened& opened) {
 
 Reply open(Request request) {
   const Json& a = request.arguments;
-  const Options given(
-      "open", a,
-      {"spectral", "illuminant", "hasCosine", "hasCosineO", "brf", "clampNegatives", "back", "entry"},
-      {"verb", "id", "spec", "name", "decoderAt"});
+  const Options given("open", a,
+                      {"spectral", "illuminant", "hasCosine", "hasCosineO", "brf", "clampNegatives", "back",
+                       "part", "band", "scaleToTis", "entry"},
+                      {"verb", "id", "spec", "name", "decoderAt"});
   OpenOptions options;
   given.read("spectral", options.keep_spectral);
   given.read("illuminant", options.illuminant);
@@ -121,6 +121,13 @@ Reply open(Request request) {
   given.read("brf", options.brf);
   given.read("clampNegatives", options.clamp_negatives);
   given.read("back", options.back_side);
+  given.read("scaleToTis", options.scale_to_tis);
+  given.read("band", options.band);
+  if (const std::string part = given.text("part"); !part.empty()) {
+    options.part = find_bsdf_part(part);
+    if (!options.part)
+      throw Error(fmt::format("open: expected a part such as transmission-front, found {}", in_quotes(part)));
+  }
   given.text("entry");  // read by open_bytes: a text here
   // no file of a light is at hand here
   constexpr std::array<std::string_view, 4> kLights{"E", "D50", "D65", "A"};
@@ -153,7 +160,9 @@ Reply info(const Request& request) {
 
 // Directions n x 3, those to the light before those to the viewer; values n x channels, NaN where none is known.
 Reply evaluate(const Request& request) {
-  const BrdfRef brdf = material(request.arguments).ref();
+  const Source& source = material(request.arguments);
+  const BrdfRef brdf = source.ref();
+  const double side = source.findings.transmits() ? -1 : 1;  // wo of a transmission lies below the surface
   const std::vector<float> directions = floats_of(request.bytes);
   if (directions.size() % 6 != 0) throw Error("evaluate: expected as many wi as wo, three numbers each");
   const std::size_t n = directions.size() / 6, channels = static_cast<std::size_t>(brdf.channels());
@@ -173,7 +182,10 @@ Reply evaluate(const Request& request) {
   for (std::size_t begin = 0; begin < n; begin += kChunk) {
     const std::size_t count = std::min(kChunk, n - begin);
     pairs.clear();
-    for (std::size_t i = begin; i < begin + count; ++i) pairs.push_back({direction(i), direction(n + i)});
+    for (std::size_t i = begin; i < begin + count; ++i) {
+      pairs.push_back({direction(i), direction(n + i)});
+      pairs.back().wo.z *= side;
+    }
     brdf.eval(pairs, std::span(values).first(count * channels), std::span(known).first(count));
     for (std::size_t i = 0; i < count * channels; ++i)
       result.push_back(known[i / channels] ? static_cast<float>(values[i])

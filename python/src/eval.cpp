@@ -24,6 +24,7 @@ struct Job {
   Rows<const T> wi, wo;
   Rows<T> f;
   std::size_t count, channels;
+  bool transmits = false;  ///< wo lies below the surface: it is mirrored through it before it is evaluated
 };
 
 // A part of a model's evaluation: as arrays lie if all are in planes or all in rows, else by rows.
@@ -74,6 +75,7 @@ void eval_source(BrdfRef brdf, const Job<T>& job, std::size_t begin, std::size_t
       pairs[k] = {vector_at(job.wi, i + k), vector_at(job.wo, i + k)};
       valid[k] = is_direction(pairs[k].wi) && is_direction(pairs[k].wo);
       if (!valid[k]) pairs[k] = {{0, 0, 1}, {0, 0, 1}};
+      if (job.transmits) pairs[k].wo.z = -pairs[k].wo.z;
     }
     brdf.eval(std::span(pairs).first(count), std::span(values).first(count * job.channels),
               std::span(known).first(count));
@@ -87,14 +89,20 @@ void eval_source(BrdfRef brdf, const Job<T>& job, std::size_t begin, std::size_t
 template <class T>
 nb::object eval(const OpenedBrdf& brdf, const Array<const T>& wi, const Array<const T>& wo,
                 const nb::object& out) {
-  Job<T> job{rows_of<T>(wi, "wi", 3), rows_of<T>(wo, "wo", 3), {}, 0, brdf.ref().channels()};
+  Job<T> job{.wi = rows_of<T>(wi, "wi", 3),
+             .wo = rows_of<T>(wo, "wo", 3),
+             .f = {},
+             .count = 0,
+             .channels = brdf.ref().channels(),
+             .transmits = brdf.source().findings.transmits()};
+  const bool fast = brdf.model() && !job.transmits;
   const bool one = job.wi.one && job.wo.one;
   job.count = match(job.wi, job.wo, "wi and wo");
   const bool planes = job.wi.planes() && job.wo.planes() && job.count > 1;
   const Result<T> result = make_result<T>(out, job.count, job.channels, planes);
   job.f = result.rows;
   const FunctionWatch watch({&brdf});
-  if (std::is_same_v<T, float> && job.count == 1 && brdf.model()) {
+  if (std::is_same_v<T, float> && job.count == 1 && fast) {
     if constexpr (std::is_same_v<T, float>) eval_one(brdf.evaluator(), job);
   } else if (job.count == 1) {
     eval_source(brdf.ref(), job, 0, 1);
@@ -103,7 +111,7 @@ nb::object eval(const OpenedBrdf& brdf, const Array<const T>& wi, const Array<co
     without_gil(watch, [&] {
       for_each_chunk(job.count, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
         if constexpr (std::is_same_v<T, float>)
-          if (brdf.model()) return eval_model(brdf.evaluator(), job, begin, end);
+          if (fast) return eval_model(brdf.evaluator(), job, begin, end);
         eval_source(brdf.ref(), job, begin, end);
       });
     });
@@ -121,7 +129,11 @@ nb::object eval_any(const OpenedBrdf& brdf, nb::handle wi, nb::handle wo, const 
 // in planes or all in rows: what Python's eval is measured against.
 double time_eval(const OpenedModel& model, const Array<const float>& wi, const Array<const float>& wo,
                  const nb::object& out, int repeats) {
-  Job<float> job{rows_of<float>(wi, "wi", 3), rows_of<float>(wo, "wo", 3), {}, 0, model.brdf().channels()};
+  Job<float> job{.wi = rows_of<float>(wi, "wi", 3),
+                 .wo = rows_of<float>(wo, "wo", 3),
+                 .f = {},
+                 .count = 0,
+                 .channels = model.brdf().channels()};
   job.count = match(job.wi, job.wo, "wi and wo");
   job.f = make_result<float>(out, job.count, job.channels, false).rows;
   const nb::gil_scoped_release released;
@@ -135,7 +147,8 @@ double time_eval(const OpenedModel& model, const Array<const float>& wi, const A
 }
 
 constexpr const char* kEvalDoc =
-    "f_r in 1/sr, without the cosine, zero below the horizon.\n\n"
+    "f_r in 1/sr, without the cosine, zero below the horizon; of a transmission f_t, whose wo lies below: z "
+    "< 0.\n\n"
     "wi, wo: unit vectors to the light and the viewer, (N, 3) or (3,), both float32 or both float64, any\n"
     "strides, read where they lie; normal (0, 0, 1). Lists and integers are taken too, as the other "
     "argument's\n"

@@ -14,6 +14,7 @@
 #include <burnish/factors/model_spec.h>
 #include <burnish/io/open_source.h>
 #include <burnish/io/source_report.h>
+#include <burnish/math/closest_name.h>
 
 #include "opened_brdf.h"
 #include "texts.h"
@@ -21,6 +22,15 @@
 namespace burnish::python {
 
 namespace {
+
+// The part of that name, none of an empty one.
+std::optional<BsdfPart> part_of(const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  if (const auto part = find_bsdf_part(name)) return part;
+  std::vector<std::string_view> names;
+  for (const BsdfPart part : kBsdfParts) names.push_back(to_string(part));
+  throw Error("part: " + expected_one_of(names, name));
+}
 
 OpenedBrdf* open(const std::string& spec, const OpenOptions& options) {
   Source source = open_source(spec, options);
@@ -215,22 +225,25 @@ void bind_source(nb::module_& m) {
   m.def(
       "open_source",
       [](const nb::object& spec, bool keep_spectral, const std::string& illuminant, bool has_cosine,
-         bool clamp_negatives, bool back_side, bool has_cosine_o, bool brf) {
+         bool clamp_negatives, bool back_side, bool has_cosine_o, bool brf, const std::string& part,
+         const std::string& band, bool scale_to_tis) {
         if (!nb::isinstance<nb::str>(spec) && !nb::hasattr(spec, "__fspath__"))
           throw nb::type_error(
               fmt::format("spec: expected a path or a spec, found {}", nb::repr(spec).c_str()).c_str());
         const auto path = nb::cast<std::string>(nb::module_::import_("os").attr("fspath")(spec));
         const nb::gil_scoped_release released;
-        return open(path,
-                    {keep_spectral, illuminant, has_cosine, clamp_negatives, back_side, has_cosine_o, brf});
+        return open(path, {keep_spectral, illuminant, has_cosine, clamp_negatives, back_side, has_cosine_o,
+                           brf, part_of(part), band, scale_to_tis});
       },
       nb::arg("spec"), nb::kw_only(), nb::arg("keep_spectral") = false, nb::arg("illuminant") = "E",
       nb::arg("has_cosine") = false, nb::arg("clamp_negatives") = true, nb::arg("back_side") = false,
-      nb::arg("has_cosine_o") = false, nb::arg("brf") = false, nb::rv_policy::take_ownership,
+      nb::arg("has_cosine_o") = false, nb::arg("brf") = false, nb::arg("part") = "", nb::arg("band") = "",
+      nb::arg("scale_to_tis") = false, nb::rv_policy::take_ownership,
       nb::sig(
           "def open_source(spec: str | os.PathLike, *, keep_spectral: bool = False, illuminant: str = 'E', "
           "has_cosine: bool = False, clamp_negatives: bool = True, back_side: bool = False, "
-          "has_cosine_o: bool = False, brf: bool = False) -> Source"),
+          "has_cosine_o: bool = False, brf: bool = False, part: str = '', band: str = '', "
+          "scale_to_tis: bool = False) -> Source"),
       "Opens a file of any known format (found by content), a neural encoding \"nbrdf:FILE#NAME\" or\n"
       "\"np:FOLDER#NAME\", or an analytic BRDF such as \"ggx:alpha_x=0.1,alpha_y=0.3\".\n\n"
       "keep_spectral: one channel a wavelength instead of linear Rec. 709; illuminant: \"E\", \"D50\", "
@@ -239,8 +252,11 @@ void bind_source(nb::module_& m) {
       "light under which spectra become RGB; has_cosine: CSV values are f_r cos(theta_i), has_cosine_o: f_r\n"
       "cos(theta_o), brf: pi f_r; clamp_negatives: "
       "set\n"
-      "interpolated values below zero to zero; back_side: Klems, the back's reflection. A burnish model is\n"
-      "returned as a Model.");
+      "interpolated values below zero to zero; back_side: Klems, the back's reflection. part:\n"
+      "\"reflection-front\", \"reflection-back\", \"transmission-front\" or \"transmission-back\" of a file "
+      "with\n"
+      "several, band: \"Visible\", \"Solar\", \"NIR\", \"CIE-XYZ\", ...; info() names those there are.\n"
+      "scale_to_tis: Zemax, scale each incidence to its TIS. A burnish model is returned as a Model.");
 }
 
 }  // namespace burnish::python

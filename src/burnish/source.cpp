@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
@@ -29,6 +30,17 @@ Found of_measurement(const Source& source, const Use& use) {
                                   source.findings.format));
       },
       source.brdf);
+}
+
+/// The part and band that notes name; nothing where they name none.
+std::optional<BsdfBlock> block_of(const std::string& notes) {
+  const auto json = nlohmann::json::parse(notes, nullptr, false);
+  const auto text_at = [&](const char* key) {
+    const auto found = json.is_object() ? json.find(key) : json.end();
+    return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  const auto part = find_bsdf_part(text_at("part"));
+  return part ? std::optional(BsdfBlock{*part, text_at("band")}) : std::nullopt;
 }
 
 void expect_nodes(const Source& source, std::size_t found) {
@@ -106,6 +118,7 @@ Source to_source(const std::string& name, Model model) {
   findings.description = model_expression(model.brdf);
   findings.lambda_nm = std::move(model.lambda_nm);
   findings.notes = std::move(model.notes);
+  findings.block = block_of(findings.notes);
   for (const Table& table : model.brdf.tables()) findings.sample_count += table.layout.node_count();
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
   return {name, std::move(model.brdf), std::move(findings)};
@@ -116,6 +129,7 @@ Source to_source(const std::string& name, Baseline baseline) {
   findings.format = fmt::format("{} baseline", baseline.kind);
   findings.description = baseline_expression(baseline.brdf);
   findings.notes = std::move(baseline.notes);
+  findings.block = block_of(findings.notes);
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
   return std::visit(
       [&](auto& brdf) -> Source {

@@ -29,6 +29,18 @@ TEST(Source, KeepsAModelWhole) {
   EXPECT_TRUE(std::ranges::equal(again.brdf.tables(), model.brdf.tables()));
 }
 
+TEST(Source, KnowsThePartThatAModelWasFittedTo) {
+  EXPECT_FALSE(to_source("paint", some_model()).findings.block);
+  Model model = some_model();
+  model.notes = R"({"source":"a","part":"transmission-back","band":"NIR"})";
+  const Source source = to_source("sheet", model);
+  EXPECT_EQ(source.findings.block, (BsdfBlock{BsdfPart::transmission_back, "NIR"}));
+  EXPECT_TRUE(source.findings.transmits());
+  EXPECT_EQ(to_model(source).notes, model.notes);
+  model.notes = R"({"part":"transmission-left"})";
+  EXPECT_FALSE(to_source("sheet", model).findings.block);
+}
+
 TEST(Source, EvaluatesABaselineAsItIs) {
   for (const BaselineBrdf& brdf : {BaselineBrdf(random_separable()), BaselineBrdf(random_dgf())}) {
     const Source source = to_source("paint", Baseline{.kind = "svd", .brdf = brdf});

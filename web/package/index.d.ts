@@ -33,6 +33,12 @@ export interface OpenOptions extends LongCall {
   clampNegatives?: boolean;
   /** Klems and tensor trees: the back side. */
   back?: boolean;
+  /** Of a file of several parts and bands; what info calls parts names them. A transmission's wo is mirrored through
+   * the surface. */
+  part?: "reflection-front" | "reflection-back" | "transmission-front" | "transmission-back";
+  band?: string;
+  /** Zemax: scale each incidence to its TIS. */
+  scaleToTis?: boolean;
   /** Of a file of several materials (a book, neural encodings), the one of that name; by default the first. */
   entry?: string;
   /** Of codes of Neural Processes: their decoder, which is another file. */

@@ -141,6 +141,19 @@ std::vector<Product> products_of(const FactoredBrdf& brdf) {
   return products;
 }
 
+/// What a file keeps of the notes where all of them were not asked for: which part of a surface the model is, without
+/// which its directions would be read wrong. Nothing of other models.
+std::optional<std::string> kept_notes(const std::string& text) {
+  const std::optional<Json> json = parse_notes(text);
+  if (!json || !json->contains("part")) return std::nullopt;
+  Json kept = Json::object();
+  for (const char* key : {"part", "band"})
+    if (const auto found = json->find(key); found != json->end() && found->is_string() &&
+                                            found->get_ref<const std::string&>().size() <= kLongestName)
+      kept[key] = *found;
+  return kept.dump();
+}
+
 /// One file in the making.
 class CompactWriter {
  public:
@@ -148,7 +161,8 @@ class CompactWriter {
 
   std::string run(const Model& model, CompactContent content, const Append& append = nullptr) {
     const FactoredBrdf& brdf = model.brdf;
-    const bool notes = content == CompactContent::model_and_notes;
+    const std::optional<std::string> notes =
+        content == CompactContent::model_and_notes ? model.notes : kept_notes(model.notes);
     cbor_.tag(kSelfDescribed);
     cbor_.list(append ? kExtendedParts : notes ? kParts + 1 : kParts);
     cbor_.text(kName);
@@ -178,7 +192,7 @@ class CompactWriter {
       cbor_.integer(place_in(products, product_of(brdf, lobe)));
       for (const FactorUse& use : lobe.factors) cbor_.integer(use.table);
     }
-    if (notes) cbor_.text(model.notes);
+    if (notes) cbor_.text(*notes);
     if (append) append(cbor_);
     return cbor_.written();
   }

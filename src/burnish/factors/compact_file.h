@@ -10,7 +10,7 @@ namespace burnish {
 
 /// The parts of a model that a compact file holds.
 enum class CompactContent {
-  model,           ///< all that evaluation needs, and lambda_nm; no notes
+  model,           ///< all that evaluation needs, and lambda_nm; of the notes part and band alone
   model_and_notes  ///< everything
 };
 

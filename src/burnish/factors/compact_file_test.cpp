@@ -53,6 +53,17 @@ TEST(CompactFile, RestoresModelsToTheLastBit) {
     }
 }
 
+// A model of transmission read as a reflection would be another material.
+TEST(CompactFile, KeepsThePartOfTheNotesWithoutTheOthers) {
+  Model model{.brdf = smooth_model(model_case("Pqp"))};
+  model.notes = R"({"band":"Visible","part":"transmission-front","source":"a.xml"})";
+  const Model back = parse_compact(memory_file(format_compact(model)));
+  EXPECT_EQ(back.notes, R"({"band":"Visible","part":"transmission-front"})");
+  EXPECT_TRUE(back.brdf == model.brdf);
+  model.notes = R"({"source":"a.xml"})";
+  EXPECT_EQ(parse_compact(memory_file(format_compact(model))).notes, "{}");
+}
+
 TEST(CompactFile, RestoresEveryKindOfTableWarpAndProjection) {
   for (const ModelCase& model : kModelCases)
     for (const TableFormat format : {TableFormat::half, TableFormat::single, TableFormat::unorm8})

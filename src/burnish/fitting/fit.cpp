@@ -199,7 +199,10 @@ std::size_t Fit::bytes() const noexcept {
   return model ? model->bytes() : baseline_bytes(std::get<BaselineBrdf>(brdf));
 }
 
-Fit fit(const Source& source, const FitOptions& options) {
+Fit fit(const Source& source, const FitOptions& asked) {
+  FitOptions options = asked;
+  // Light that goes the other way through a surface comes from its other side, which is another part.
+  options.symmetrize = asked.symmetrize && !source.findings.transmits();
   const Stages stages(options);
   const FittedSource fitted(source, options, stages);
   const auto start = std::chrono::steady_clock::now();
@@ -209,6 +212,7 @@ Fit fit(const Source& source, const FitOptions& options) {
       .lambda_nm = source.findings.lambda_nm,
       .report = {.source = source.name,
                  .source_format = source.findings.format,
+                 .block = source.findings.block,
                  .symmetrized = options.symmetrize,
                  .how = std::move(model.how),
                  .budget_choice = std::move(model.budget_choice),

@@ -130,7 +130,7 @@ struct FitOptions {
   /// one lobe of an anisotropic source 500,000, for a book 1,000.
   std::optional<std::size_t> samples = {};
   std::uint64_t seed = 1;        ///< of the drawn pairs
-  bool symmetrize = true;        ///< fit the reciprocal part, see SymmetrizedBrdf
+  bool symmetrize = true;        ///< fit the reciprocal part, see SymmetrizedBrdf; of no transmission
   bool conserve_energy = false;  ///< see burnish::conserve_energy
   bool score = true;             ///< measure what is stored on pairs that were not fitted
   /// Called from the calling thread with what is done ("kriging the nodes", "sampling", "choosing lobes",

@@ -176,9 +176,12 @@ std::optional<FitSummary> FitReport::summary() const {
 }
 
 nlohmann::ordered_json json_of(const FitReport& report) {
-  Json json{{"source", report.source},
-            {"source_format", report.source_format},
-            {"symmetrized", report.symmetrized}};
+  Json json{{"source", report.source}, {"source_format", report.source_format}};
+  if (report.block) {
+    json["part"] = to_string(report.block->part);
+    if (!report.block->band.empty()) json["band"] = report.block->band;
+  }
+  json["symmetrized"] = report.symmetrized;
   json.update(std::visit([](const auto& part) { return json_of(part); }, report.how));
   if (report.budget_choice) json["budget_choice"] = json_of(*report.budget_choice);
   if (report.nodes) json.update(json_of(*report.nodes));

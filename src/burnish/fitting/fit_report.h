@@ -13,6 +13,7 @@
 #include <burnish/fitting/book/complete.h>
 #include <burnish/fitting/fit_summary.h>
 #include <burnish/metrics/error_figures.h>
+#include <burnish/reflectance/bsdf_part.h>
 #include <burnish/reflectance/expected_error.h>
 #include <burnish/reflectance/node_figures.h>
 
@@ -132,6 +133,7 @@ struct NodesReport {
 /// The report of a fit.
 struct FitReport {
   std::string source, source_format;
+  std::optional<BsdfBlock> block;  ///< the part and band of a file that has several
   bool symmetrized = true;
   std::variant<OneLobeReport, LobesReport, BaselineReport, CompletionReport> how;
   std::optional<BudgetChoice> budget_choice;
@@ -146,7 +148,8 @@ struct FitReport {
   std::optional<FitSummary> summary() const;
 };
 
-/// A JSON object in one line, the notes that a model's file keeps: source, source_format, symmetrized; of one lobe
+/// A JSON object in one line, the notes that a model's file keeps: source, source_format, of a file of several parts
+/// part and band, symmetrized; of one lobe
 /// samples, smooth, floor, reweightings, rms_log_before, rms_log_after, iterations, stop_reason, smooth_shares,
 /// relative, relative_cross_validated; of several search, budget, fetches, fetch_trials, smooth, samples, lobes,
 /// loss, iterations, stop_reason, objective; of baselines method, budget, layouts_tried, error_before, error_after,

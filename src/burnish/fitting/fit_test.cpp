@@ -611,5 +611,28 @@ TEST(Fit, RefusesWhatDoesNotGoTogether) {
   EXPECT_THAT(told(even, {.form = BaselineMethod{"svd"}, .conserve_energy = true}), HasSubstr("method svd"));
 }
 
+// Light that goes the other way through a sheet comes from its other side.
+TEST(Fit, OfATransmissionKeepsTheOrderOfTheDirectionsAndSaysWhatItIs) {
+  const auto through = [](std::span<const DirectionPair> pairs, std::span<double> values) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) values[i] = 0.1 + 0.4 * pairs[i].wi.z;
+  };
+  Source source = to_source("sheet", FunctionBrdf(1, true, through));
+  const FitOptions options{
+      .form = GivenLobes{.model = "c(theta_i)", .tables = {"c=16"}}, .samples = 20000, .score = false};
+  const auto at = [](const Fit& fit, double theta_i, double theta_o) {
+    double f;
+    fit.ref().eval(spherical_direction(theta_i, 0), spherical_direction(theta_o, 2), {&f, 1});
+    return f;
+  };
+  EXPECT_TRUE(fit(source, options).report.symmetrized);
+  source.findings.block = BsdfBlock{BsdfPart::transmission_back, "NIR"};
+  const Fit model = fit(source, options);
+  EXPECT_FALSE(model.report.symmetrized);
+  EXPECT_NEAR(at(model, 0.2, 1.1), 0.1 + 0.4 * std::cos(0.2), 0.02);
+  EXPECT_NEAR(at(model, 1.1, 0.2), 0.1 + 0.4 * std::cos(1.1), 0.02);
+  EXPECT_THAT(to_json(model.report), testing::HasSubstr(R"("part":"transmission-back","band":"NIR")"));
+  EXPECT_EQ(to_source("model", to_model(model)).findings.block, source.findings.block);
+}
+
 }  // namespace
 }  // namespace burnish

@@ -21,6 +21,7 @@
 #include <burnish/io/tensor_tree_xml.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/io/utia.h>
+#include <burnish/io/window_xml.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/closest_name.h>
 #include <burnish/math/spectrum.h>
@@ -245,6 +246,17 @@ class Converter {
             .resampled = resampled_};
   }
 
+  /// The part that the source is; a format without sides has front ones.
+  BsdfPart part() const { return source_.findings.block.value_or(BsdfBlock{}).part; }
+
+  /// The block of a window system's file that the source came from. Others become Radiance's front in the visible
+  /// spectrum, as the luminance of a colour does.
+  BsdfBlock window_block() const {
+    BsdfBlock block = source_.findings.block.value_or(BsdfBlock{BsdfPart::reflection_back, {}});
+    if (block.band.empty() || block.band == kColourBand) block.band = "Visible";
+    return block;
+  }
+
   /// Half/difference cells of the source, one value for directions exchanged unless they cover the circle.
   HalfDiffTable half_diff_cells() {
     const BrdfRef brdf = isotropic();
@@ -287,13 +299,13 @@ class Converter {
   Converted mbsdf() {
     require_grey_or_rgb("MBSDF");
     const auto* table = std::get_if<AngleTable>(&source_.brdf);
-    if (table && fits_mbsdf(*table)) return kept(format_mbsdf(*table));
+    if (table && fits_mbsdf(*table)) return kept(format_mbsdf(*table, part()));
     const BrdfRef brdf = isotropic();
     lose_sides(brdf);
     const auto n = static_cast<std::size_t>(options_.cells);
     const AngleTable made = tabulate_angles(brdf, mbsdf_layout(n, 2 * n));
     lose_unknown(made);
-    return sampled(cells("angle"), format_mbsdf(made));
+    return sampled(cells("angle"), format_mbsdf(made, part()));
   }
 
   Converted zemax() {
@@ -307,7 +319,7 @@ class Converter {
       });
       note("{}", told_apart ? "TIS changed: it says what the values integrate to"
                             : "TIS was computed anew from the values");
-      return kept(format_zemax(*table, sample, source_.findings.comments));
+      return kept(format_zemax(*table, sample, source_.findings.comments, part()));
     }
     const BrdfRef brdf = brdf_;
     if (brdf.isotropic()) lose_sides(brdf);
@@ -315,7 +327,7 @@ class Converter {
     return sampled(
         fmt::format("{} x {} x {} x {} angles around the mirror direction", made.axes[0].nodes.size(),
                     made.axes[1].nodes.size(), made.axes[2].nodes.size(), made.axes[3].nodes.size()),
-        format_zemax(made, sample));
+        format_zemax(made, sample, {}, part()));
   }
 
   Converted utia() {
@@ -333,9 +345,7 @@ class Converter {
   Converted tensor_tree() {
     require_grey_or_rgb("a tensor tree");
     if (const auto* tree = std::get_if<TensorTree>(&source_.brdf))
-      return kept(source_.findings.side.empty()
-                      ? format_tensor_tree(*tree, sample_name())
-                      : format_tensor_tree(*tree, sample_name(), source_.findings.side));
+      return kept(format_tensor_tree(*tree, sample_name(), window_block()));
     const Luminance grey{brdf_};
     if (has_colour(brdf_)) lose("colour: its luminance is kept");
     // half the cells along a polar angle, a power of two
@@ -343,9 +353,7 @@ class Converter {
     while (depth < 5 && 4 << depth <= options_.cells) ++depth;
     const int along = 1 << depth;
     const TensorTree made = tabulate_tree(grey, depth, kTreeTolerance);
-    const std::string& side = source_.findings.side;
-    const std::string text = side.empty() ? format_tensor_tree(made, sample_name())
-                                          : format_tensor_tree(made, sample_name(), side);
+    const std::string text = format_tensor_tree(made, sample_name(), window_block());
     return sampled(fmt::format("{0} x {0} x {0} x {0} cells of Shirley-Chiu squares", along), text, grey);
   }
 
@@ -521,6 +529,14 @@ Losses left_behind(const Source& source, const Format& format) {
   const Findings& found = source.findings;
   Losses losses;
   if (!found.left_out.empty()) losses.push_back(fmt::format("{}", fmt::join(found.left_out, ", ")));
+  if (found.transmits() && !format.keeps_transmission)
+    losses.push_back(
+        "that it is transmission: the format has reflection alone, wo is mirrored through the surface");
+  if (found.block && is_back(found.block->part) && !format.keeps_block)
+    losses.push_back("the side: it is the back's");
+  if (found.block && !found.block->band.empty() && !same_name(found.block->band, "Visible") &&
+      found.block->band != kColourBand && !format.keeps_block)
+    losses.push_back(fmt::format("the band {}", found.block->band));
   if (!found.illuminant.empty())
     losses.push_back(fmt::format("spectra became linear Rec. 709 ({})", found.illuminant));
   if (!format.keeps_origin && found.origin != Origin{}) losses.push_back("licence, authors and origin");

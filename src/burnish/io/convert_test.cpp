@@ -238,6 +238,67 @@ TEST(Convert, SaysWhatReadingLost) {
 }
 
 // Readers of scattered files take no samples on the horizon, which ALTA's may hold.
+/// A Klems file with one patch a side, of this part and band beside a reflection.
+std::string one_patch(std::string_view direction, std::string_view band) {
+  const auto block = [](std::string_view named, std::string_view wavelength, std::string_view value) {
+    return fmt::format(
+        "<WavelengthData><Wavelength>{}</Wavelength><WavelengthDataBlock><WavelengthDataDirection>{}"
+        "</WavelengthDataDirection><ColumnAngleBasis>One</ColumnAngleBasis><RowAngleBasis>One</RowAngleBasis>"
+        "<ScatteringData>{}</ScatteringData></WavelengthDataBlock></WavelengthData>",
+        wavelength, named, value);
+  };
+  return fmt::format(
+      "<WindowElement><Optical><Layer><DataDefinition><IncidentDataStructure>Columns</IncidentDataStructure>"
+      "<AngleBasis><AngleBasisName>One</AngleBasisName><AngleBasisBlock><nPhis>1</nPhis><ThetaBounds>"
+      "<LowerTheta>0</LowerTheta><UpperTheta>90</UpperTheta></ThetaBounds></AngleBasisBlock></AngleBasis>"
+      "</DataDefinition>{}{}</Layer></Optical></WindowElement>",
+      block("Reflection Front", "Visible", "0.1"), block(direction, band, "0.2"));
+}
+
+TEST(Convert, WritesAPartBackToItsSideAndBand) {
+  using enum BsdfPart;
+  for (const auto& [direction, part] : {std::pair("Transmission Back", transmission_back),
+                                        {"Transmission Front", transmission_front},
+                                        {"Reflection Back", reflection_back}}) {
+    const Source source =
+        parse_source(memory_file(one_patch(direction, "Solar")), {.part = part, .band = "Solar"});
+    const Converted tree = convert(source, "tensortree", {.cells = 8});
+    EXPECT_THAT(tree.losses, Not(Contains(HasSubstr("side"))));
+    EXPECT_THAT(tree.losses, Contains("Reflection Front (Visible)"));
+    const Source back = parse_source(memory_file(tree.bytes), {.part = part, .band = "Solar"});
+    EXPECT_EQ(back.findings.block, source.findings.block);
+    double f;
+    back.ref().eval({0, 0, 1}, {0, 0, 1}, {&f, 1});
+    EXPECT_NEAR(f, 0.2, 1e-6);
+  }
+}
+
+// MBSDF and Zemax files have no sides, and others no transmission.
+TEST(Convert, SaysThatASideABandOrTransmissionIsLost) {
+  const Source source = parse_source(memory_file(one_patch("Transmission Back", "Solar")),
+                                     {.part = BsdfPart::transmission_back});
+  for (const char* format : {"mbsdf", "zemax"}) {
+    const Converted converted = convert(source, format, {.cells = 6});
+    EXPECT_THAT(converted.losses, Contains(HasSubstr("the back's"))) << format;
+    EXPECT_THAT(converted.losses, Contains("the band Solar")) << format;
+    EXPECT_THAT(converted.losses, Not(Contains(HasSubstr("that it is transmission")))) << format;
+    EXPECT_EQ(parse_source(memory_file(converted.bytes), {}).findings.block,
+              (BsdfBlock{BsdfPart::transmission_front, ""}))
+        << format;
+  }
+  EXPECT_THAT(convert(source, "merl", {.cells = 6}).losses, Contains(HasSubstr("that it is transmission")));
+}
+
+TEST(Convert, SaysWhichPartASourceOfOnePartIs) {
+  const std::string merl =
+      convert(open_source("ggx:alpha_x=0.5,alpha_y=0.5,f0=0.4", {}), "merl", {.cells = 6}).bytes;
+  EXPECT_EQ(parse_source(memory_file(merl), {.part = BsdfPart::reflection_front}).ref().channels(), 3u);
+  EXPECT_THAT(error_of([&] { parse_source(memory_file(merl), {.part = BsdfPart::transmission_front}); }),
+              HasSubstr("expected part transmission-front, found reflection-front alone (MERL"));
+  EXPECT_THAT(error_of([&] { parse_source(memory_file(merl), {.band = "Solar"}); }),
+              HasSubstr("expected band 'Solar', found reflection-front alone (MERL"));
+}
+
 TEST(Convert, LeavesOutSamplesOnTheHorizon) {
   const Vec3 up{0, 0, 1}, level{1, 0, 0}, nearly{1, 0, 1e-17}, slanted = spherical_direction(1.5, 0);
   const Source scattered{

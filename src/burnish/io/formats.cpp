@@ -64,6 +64,14 @@ Source read_cornell(const FileBytes& file, const OpenOptions& options) {
           std::move(parsed.findings)};
 }
 
+/// Trees of colour are a function of their own: each has its own cubes.
+Source read_tensor_tree(const FileBytes& file, const OpenOptions& options) {
+  TensorTreeFile parsed = parse_tensor_tree(file, options);
+  Findings findings = parsed.findings;
+  if (parsed.colour.empty()) return {file.name, std::move(parsed.table), std::move(findings)};
+  return {file.name, colour_of(std::move(parsed)), std::move(findings)};
+}
+
 Source read_model(const FileBytes& file, const OpenOptions&) {
   return to_source(file.name, parse_model(file));
 }
@@ -155,7 +163,8 @@ constexpr Format kFormats[] = {
      .looks_like = seen<looks_like_mbsdf>,
      .parse = read_by<parse_mbsdf>,
      .write = write_mbsdf,
-     .takes_cells = true},
+     .takes_cells = true,
+     .keeps_transmission = true},
     {.title = "Zemax",
      .to = "zemax",
      .endings = ".bsdf",
@@ -165,16 +174,19 @@ constexpr Format kFormats[] = {
      .write = write_zemax,
      .other_endings = ".txt",
      .keeps_name = true,
-     .keeps_comments = true},
+     .keeps_comments = true,
+     .keeps_transmission = true},
     {.title = "tensor tree",
      .to = "tensortree",
      .endings = ".xml",
      .holds = "cubes of Shirley-Chiu squares, grey (rank 3: of rank 3 alone)",
      .looks_like = seen<looks_like_tensor_tree>,
-     .parse = read_by<parse_tensor_tree>,
+     .parse = read_tensor_tree,
      .write = write_tensor_tree,
      .takes_cells = true,
-     .keeps_name = true},
+     .keeps_name = true,
+     .keeps_transmission = true,
+     .keeps_block = true},
     {.title = "Klems",
      .endings = ".xml",
      .holds = "patches of both hemispheres, grey",
@@ -252,7 +264,9 @@ constexpr Format kFormats[] = {
      .told = Told::by_signature,
      .looks_like = is_exr_model,
      .parse = read_model,
-     .write = write_model},
+     .write = write_model,
+     .keeps_transmission = true,
+     .keeps_block = true},
     {.title = "model, compact",
      .to = "burnish",
      .endings = ".burnish",
@@ -261,7 +275,9 @@ constexpr Format kFormats[] = {
      .looks_like = is_compact_model,
      .parse = read_model,
      .write = write_compact,
-     .takes_notes = true},
+     .takes_notes = true,
+     .keeps_transmission = true,
+     .keeps_block = true},
     {.title = "surface",
      .endings = ".burnish, .exr",
      .holds = "surface:FILE#COLUMN,ROW, what fit-surface writes",

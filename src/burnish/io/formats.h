@@ -49,6 +49,8 @@ struct Format {
   bool keeps_name = false;              ///< has a place for what a source calls itself
   bool keeps_comments = false;          ///< has one for remarks
   bool keeps_origin = false;            ///< has one for licence, authors and sources
+  bool keeps_transmission = false;      ///< says that values are of transmission
+  bool keeps_block = false;             ///< says which side and which band they are of
   bool written_elsewhere = false;       ///< another verb than convert writes it at a file's name alone
 
   bool is_read() const noexcept { return looks_like != nullptr; }

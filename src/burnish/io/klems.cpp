@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <fmt/format.h>
 #include <pugixml.hpp>
@@ -9,6 +10,7 @@
 #include <burnish/io/text_reader.h>
 #include <burnish/io/window_xml.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/spectrum.h>
 
 namespace burnish {
 
@@ -77,25 +79,9 @@ std::vector<float> read_values(const WindowXml& reader, std::string_view text, s
   return values;
 }
 
-}  // namespace
-
-bool looks_like_klems(std::string_view text) noexcept {
-  return looks_like_window_xml(text);
-}
-
-KlemsFile parse_klems(const FileBytes& file, const OpenOptions& options) {
-  const WindowXml reader(file);
-  const std::string_view structure = reader.structure();
-  const bool rows = same_name(structure, "Rows");  // each row an incident patch
-  if (!rows && !same_name(structure, "Columns"))
-    reader.fail("IncidentDataStructure Columns or Rows", in_quotes(structure));
-  ReflectionBlock reflection = reader.reflection(options.back_side);
-  const pugi::xml_node block = reflection.node;
-
-  // the bases and the matrix between them
-  KlemsFile result;
-  PatchTable& table = result.table;
-  Findings& findings = result.findings;
+/// The bases and the matrix between them of one block.
+PatchTable read_matrix(const WindowXml& reader, pugi::xml_node block, bool rows) {
+  PatchTable table;
   const char *const column = "ColumnAngleBasis", *const row = "RowAngleBasis";
   const char* const text = block.child_value("ScatteringData");
   const std::size_t count = count_values(text);
@@ -112,6 +98,45 @@ KlemsFile parse_klems(const FileBytes& file, const OpenOptions& options) {
     const std::vector<float> read = table.values;
     for (std::size_t k = 0; k < read.size(); ++k) table.values[k % out * in + k / out] = read[k];
   }
+  return table;
+}
+
+/// X, Y and Z as linear Rec. 709.
+PatchTable colour_table(const WindowXml& reader, std::span<const PatchTable> xyz) {
+  PatchTable table = xyz[0];
+  for (const PatchTable& other : xyz)
+    if (other.incident != table.incident || other.outgoing != table.outgoing)
+      reader.fail("the same bases for CIE-X, CIE-Y and CIE-Z", "others");
+  table.channel_count = 3;
+  table.values.clear();
+  for (std::size_t pair = 0; pair < xyz[0].values.size(); ++pair)
+    for (const double value : rec709_of_equal_energy({static_cast<double>(xyz[0].values[pair]),
+                                                      static_cast<double>(xyz[1].values[pair]),
+                                                      static_cast<double>(xyz[2].values[pair])}))
+      table.values.push_back(static_cast<float>(value));
+  return table;
+}
+
+}  // namespace
+
+bool looks_like_klems(std::string_view text) noexcept {
+  return looks_like_window_xml(text);
+}
+
+KlemsFile parse_klems(const FileBytes& file, const OpenOptions& options) {
+  const WindowXml reader(file);
+  const std::string_view structure = reader.structure();
+  const bool rows = same_name(structure, "Rows");  // each row an incident patch
+  if (!rows && !same_name(structure, "Columns"))
+    reader.fail("IncidentDataStructure Columns or Rows", in_quotes(structure));
+  KlemsFile result;
+  PatchTable& table = result.table;
+  Findings& findings = result.findings;
+  const ChosenBlock chosen = reader.choose(options, findings);
+  std::vector<PatchTable> channels;
+  for (const pugi::xml_node node : chosen.nodes) channels.push_back(read_matrix(reader, node, rows));
+  table = channels.size() == 3 ? colour_table(reader, channels) : std::move(channels.front());
+
   for (const float value : table.values)
     if (value < 0) {
       ++findings.negative_count;
@@ -119,14 +144,13 @@ KlemsFile parse_klems(const FileBytes& file, const OpenOptions& options) {
     }
   findings.format = "Klems XML";
   findings.description = reader.material();
-  findings.conventions = {
-      fmt::format("{}; {} incident; values are f_r without the cosine.", reflection.sentence,
-                  rows ? "rows" : "columns"),
-      "Incident azimuths are those the light travels to: the mirror direction has the same patch.",
-      "Constant over each pair of patches, as Radiance evaluates it."};
-  findings.side = std::move(reflection.side);
-  findings.left_out = std::move(reflection.left_out);
-  findings.sample_count = table.values.size();
+  findings.conventions.insert(
+      findings.conventions.begin(),
+      {fmt::format("{}; {} incident; values are f_{} without the cosine.", chosen.sentence,
+                   rows ? "rows" : "columns", findings.transmits() ? 't' : 'r'),
+       "Incident azimuths are those the light travels to: the mirror direction has the same patch.",
+       "Constant over each pair of patches, as Radiance evaluates it."});
+  findings.sample_count = table.values.size() / table.channel_count;
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
   return result;
 }

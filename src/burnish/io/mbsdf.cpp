@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include <burnish/io/mbsdf.h>
+#include <burnish/io/part_choice.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/math/angles.h>
 
@@ -48,51 +50,82 @@ BlockHeader read_block_header(ByteReader& reader) {
   return header;
 }
 
-bool starts_reflection(std::string_view line) noexcept {
-  return line.starts_with(kReflection) || line.starts_with(kOnly);
+/// The part that a line begins a block of; nothing for another line.
+std::optional<BsdfPart> part_begun_by(std::string_view line) noexcept {
+  if (line.starts_with(kReflection) || line.starts_with(kOnly)) return BsdfPart::reflection_front;
+  return line.starts_with(kTransmission) ? std::optional(BsdfPart::transmission_front) : std::nullopt;
 }
 
-/// What stands before the reflection block; a transmission block is passed over.
-Findings read_mbsdf_header(const FileBytes& file, ByteReader& reader) {
-  Findings findings;
-  findings.format = "NVIDIA MBSDF";
+/// One block of a file.
+struct FoundBlock {
+  BsdfPart part;
+  BlockHeader header;
+  std::uint64_t values_at = 0;
+};
+
+/// Passes over the line break behind a block's values. Returns whether anything more follows.
+bool has_more(const FileBytes& file, ByteReader& reader) {
+  const std::string_view rest = file.text().substr(reader.offset());
+  if (trimmed(rest).empty() || rest == "\n") return false;
+  if (rest.starts_with('\n')) reader.seek(reader.offset() + 1);
+  return true;
+}
+
+/// All blocks; the lines in front of the first become the description.
+std::vector<FoundBlock> find_blocks(const FileBytes& file, ByteReader& reader, Findings& findings) {
+  std::vector<FoundBlock> blocks;
   read_line(file, reader);
-  std::string_view line = read_line(file, reader);
-  for (; !starts_reflection(line); line = read_line(file, reader)) {
-    if (line.starts_with(kTransmission)) {
-      const BlockHeader skipped = read_block_header(reader);
-      reader.seek(reader.offset() + skipped.value_count() * sizeof(float));
-      if (reader.remaining() == 0) reader.fail("a reflection block", "transmission only");
-      findings.left_out.push_back("transmission");
+  while (blocks.empty() || has_more(file, reader)) {
+    const std::string_view rest = file.text().substr(reader.offset());
+    if (!blocks.empty() && !part_begun_by(rest) && rest.substr(0, kLongestLine).find("=") >= rest.find('\n'))
+      reader.fail("the end of the file or another block", fmt::format("{} more bytes", reader.remaining()));
+    const std::string_view line = read_line(file, reader);
+    if (const auto part = part_begun_by(line)) {
+      const BlockHeader header = read_block_header(reader);
+      blocks.push_back({*part, header, reader.offset()});
+      reader.seek(reader.offset() + header.value_count() * sizeof(float));
     } else if (!line.empty()) {
       if (line.find('=') == std::string_view::npos) reader.fail("a line KEY=VALUE", in_quotes(line));
       if (findings.description.size() < 200)
         findings.description += (findings.description.empty() ? "" : ", ") + printable(line, 80);
     }
   }
-  return findings;
+  return blocks;
 }
 
-/// A block's values, all of which must be numbers; nothing but another block may follow, which is left out.
-std::vector<float> read_block_values(const FileBytes& file, ByteReader& reader, std::uint64_t count,
-                                     Findings& findings) {
-  const std::uint64_t start = reader.offset();
+/// A block's values, all of which must be numbers.
+std::vector<float> read_block_values(ByteReader& reader, const FoundBlock& block) {
+  reader.seek(block.values_at);
+  const std::uint64_t count = block.header.value_count();
   const auto bytes = reader.take(count * sizeof(float), "values");
-  if (std::string_view rest = trimmed(file.text().substr(reader.offset())); !rest.empty() && rest != "\n") {
-    rest.remove_prefix(rest[0] == '\n');
-    if (!rest.starts_with(kTransmission) && !starts_reflection(rest))
-      reader.fail("the end of the file or another block", fmt::format("{} more bytes", reader.remaining()));
-    findings.left_out.push_back(rest.starts_with(kTransmission) ? "transmission"
-                                                                : "a second block of reflection");
-  }
   std::vector<float> values(count);
   std::memcpy(values.data(), bytes.data(), bytes.size());
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isfinite(values[i])) {
-      reader.seek(start + i * sizeof(float));
+      reader.seek(block.values_at + i * sizeof(float));
       reader.fail("a finite value", fmt::format("{}", values[i]));
     }
   return values;
+}
+
+/// Chooses a block, and notes the blocks that are left out; of each part the first can be read.
+const FoundBlock& chosen_block(const FileBytes& file, const std::vector<FoundBlock>& found,
+                               const OpenOptions& options, Findings& findings) {
+  std::vector<BsdfBlock> blocks;
+  std::vector<const FoundBlock*> first;
+  for (const FoundBlock& block : found)
+    if (const BsdfBlock named{block.part, {}}; std::ranges::find(blocks, named) == blocks.end()) {
+      blocks.push_back(named);
+      first.push_back(&block);
+    }
+  const std::size_t chosen = choose_block(file.name, blocks, options);
+  note_blocks(blocks, chosen, options, findings);
+  for (const FoundBlock& block : found)
+    if (&block != first[chosen])
+      findings.left_out.push_back(fmt::format("{}{}",
+                                              block.part == blocks[chosen].part ? "a second block of " : "",
+                                              is_transmission(block.part) ? "transmission" : "reflection"));
+  return *first[chosen];
 }
 
 }  // namespace
@@ -101,18 +134,20 @@ bool looks_like_mbsdf(std::span<const std::byte> bytes) noexcept {
   return bytes.size() >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size() - 1) == 0;
 }
 
-MbsdfFile parse_mbsdf(const FileBytes& file) {
+MbsdfFile parse_mbsdf(const FileBytes& file, const OpenOptions& options) {
   ByteReader reader(file);
   if (!looks_like_mbsdf(file.bytes))
     reader.fail("NVIDIA ARC MBSDF V1", in_quotes(file.text().substr(0, kMagic.size())));
   MbsdfFile result;
   Findings& findings = result.findings;
-  findings = read_mbsdf_header(file, reader);
-  const BlockHeader header = read_block_header(reader);
+  findings.format = "NVIDIA MBSDF";
+  const std::vector<FoundBlock> found = find_blocks(file, reader, findings);
+  const FoundBlock& block = chosen_block(file, found, options, findings);
+  const BlockHeader& header = block.header;
   AngleTable& table = result.table;
   table = mbsdf_layout(header.theta_count, header.phi_count);
   table.channel_count = header.channels;
-  table.values = read_block_values(file, reader, header.value_count(), findings);
+  table.values = read_block_values(reader, block);
   for (const float value : table.values) {
     if (value >= 0) continue;
     ++findings.negative_count;
@@ -152,9 +187,9 @@ bool fits_mbsdf(const AngleTable& table) noexcept {
          (table.channel_count == 1 || table.channel_count == 3);
 }
 
-std::string format_mbsdf(const AngleTable& table) {
+std::string format_mbsdf(const AngleTable& table, BsdfPart part) {
   if (!fits_mbsdf(table)) throw Error("MBSDF: expected an isotropic table of cell centres, grey or RGB");
-  std::string bytes = std::string(kMagic) + std::string(kReflection) + '\n';
+  std::string bytes = fmt::format("{}{}\n", kMagic, is_transmission(part) ? kTransmission : kReflection);
   const auto append = [&](const auto& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
   };

@@ -88,7 +88,29 @@ TEST(Mbsdf, SkipsMetadataAndTransmission) {
     ASSERT_TRUE(file.table.eval({0, 0, 1}, {0, 0, 1}, f));
     EXPECT_EQ(f, (std::array<double, 3>{1, 2, 3}));
   }
-  EXPECT_THAT(mbsdf_error(kStart + transmission), HasSubstr("transmission only"));
+}
+
+TEST(Mbsdf, ReadsTransmissionWhereItIsAskedForOrAlone) {
+  const std::string transmission = block(kTransmission, 0, 1, 2, {9, 10}),
+                    reflection = block(kReflection, 1, 1, 1, {1, 2, 3});
+  const OpenOptions options{.part = BsdfPart::transmission_front};
+  for (const std::string& bytes :
+       {kStart + transmission + reflection, kStart + reflection + transmission, kStart + transmission}) {
+    const MbsdfFile file = parse_mbsdf(memory_file(bytes), options);
+    EXPECT_EQ(file.table.values, (std::vector<float>{9, 10}));
+    EXPECT_TRUE(file.findings.transmits());
+    EXPECT_TRUE(file.findings.warnings.empty());
+    // light that goes straight on is at azimuth pi
+    const Vec3 wi = spherical_direction(0.7, 2);
+    double f;
+    ASSERT_TRUE(file.table.eval(wi, mirror(wi), {&f, 1}));
+    EXPECT_EQ(f, 10);
+  }
+  const MbsdfFile alone = parse_mbsdf(memory_file(kStart + transmission));
+  EXPECT_TRUE(alone.findings.transmits());
+  EXPECT_THAT(alone.findings.warnings, testing::ElementsAre(HasSubstr("no reflection: transmission-front")));
+  EXPECT_THAT(error_of([&] { parse_mbsdf(memory_file(kStart + reflection), options); }),
+              HasSubstr("expected part transmission-front, found reflection-front"));
 }
 
 TEST(Mbsdf, CountsAndKeepsNegatives) {
@@ -104,6 +126,9 @@ TEST(Mbsdf, WritesWhatItReads) {
     AngleTable table = tabulate_angles(fixtures::Glossy{.count = channels}, mbsdf_layout(5, 7));
     ASSERT_TRUE(fits_mbsdf(table));
     EXPECT_EQ(parse_mbsdf(memory_file(format_mbsdf(table))).table.values, table.values);
+    const MbsdfFile through = parse_mbsdf(memory_file(format_mbsdf(table, BsdfPart::transmission_front)));
+    EXPECT_EQ(through.table.values, table.values);
+    EXPECT_TRUE(through.findings.transmits());
     std::fill_n(table.values.begin(), channels, std::numeric_limits<float>::quiet_NaN());
     EXPECT_EQ(parse_mbsdf(memory_file(format_mbsdf(table))).table.values[0], 0);
   }

@@ -13,6 +13,7 @@
 #include <burnish/io/np.h>
 #include <burnish/io/open_source.h>
 #include <burnish/io/openmaterial.h>
+#include <burnish/io/part_choice.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/io/utf16.h>
 #include <burnish/math/angles.h>
@@ -116,6 +117,7 @@ Source parse_source(const FileBytes& file, const OpenOptions& options) {
         "a measurement, neural encoding, baseline or model (`burnish help formats` lists what is read)",
         fmt::format("something that starts with {}", in_quotes(bytes.text().substr(0, 16))));
   Source source = format->parse(bytes, options);
+  check_block(bytes.name, source.findings, options);
   source.clamp_negatives = options.clamp_negatives;
   return source;
 }

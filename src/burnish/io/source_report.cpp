@@ -26,8 +26,8 @@ std::optional<std::string> energy_warning(const Source& source, const std::vecto
     if (const double albedo = std::ranges::max(at.albedo.albedo); albedo > most)
       most = albedo, theta = at.theta_i;
   if (most <= kMostReflected) return std::nullopt;
-  return fmt::format("More is reflected than received: {:.0f} % at theta_i = {:.0f} degrees.{}", 100 * most,
-                     degrees(theta),
+  return fmt::format("More is {} than received: {:.0f} % at theta_i = {:.0f} degrees.{}",
+                     source.findings.transmits() ? "transmitted" : "reflected", 100 * most, degrees(theta),
                      source.samples() ? " Reflectance factors? --brf divides them by pi." : "");
 }
 
@@ -39,7 +39,8 @@ std::vector<AlbedoAt> reported_albedos(const Source& source) {
     DirectionalAlbedo& albedo = at.albedo;
     if (const auto* patches = std::get_if<PatchTable>(&source.brdf);
         patches && albedo.clamped == albedo.albedo)
-      albedo.albedo[0] = albedo.clamped[0] = patches->albedo(spherical_direction(at.theta_i, at.phi_i));
+      for (std::size_t c = 0; c < patches->channels(); ++c)
+        albedo.albedo[c] = albedo.clamped[c] = patches->albedo(spherical_direction(at.theta_i, at.phi_i), c);
     if (albedo.unknown_fraction > kMostFilled) continue;
     for (std::vector<double>* values : {&albedo.albedo, &albedo.clamped})
       for (double& value : *values) value /= 1 - albedo.unknown_fraction;
@@ -84,6 +85,13 @@ std::string to_json(const SourceReport& report) {
       {"theta_o_deg", {written_degrees(findings.theta_o_min), written_degrees(findings.theta_o_max)}},
       {"reciprocity_error", reciprocity.mean},
       {"reciprocity_pairs", reciprocity.pairs}};
+  if (findings.block) {
+    json["part"] = to_string(findings.block->part);
+    json["band"] = findings.block->band;
+  }
+  for (const BsdfBlock& block : findings.blocks)
+    json["parts"].push_back(
+        {{"part", to_string(block.part)}, {"band", block.band}, {"read", block == findings.block}});
   if (mirror_asymmetry) json["mirror_asymmetry"] = *mirror_asymmetry;
   for (const auto& [theta_i, phi_i, albedo] : albedos)
     json["albedo"].push_back({{"theta_i_deg", written_degrees(theta_i)},

@@ -23,11 +23,12 @@ struct SourceReport {
 
 SourceReport report_on(const Source& source);
 
-/// A JSON object, indented by two spaces: name, format, description, channels, isotropic, lambda_nm,
-/// illuminant, conventions, warnings, left_out, comments, samples, holes, negatives, most_negative, theta_i_deg and theta_o_deg (ranges
-/// covered), reciprocity_error, reciprocity_pairs, of isotropic sources mirror_asymmetry, albedo (of it clamped_albedo,
-/// where values below zero are cut); of a compressed BRDF bytes; of a model table_bytes, lobes, scales, expression,
-/// reciprocal, tables.
+/// A JSON object, indented by two spaces: name, format, description, channels, isotropic, lambda_nm, illuminant,
+/// conventions, warnings, left_out, comments, samples, holes, negatives, most_negative, theta_i_deg and theta_o_deg
+/// (ranges covered), reciprocity_error, reciprocity_pairs, albedo (of it clamped_albedo, where values below zero are
+/// cut). Of formats with several parts also part and band (of what was read) and parts (part, band and read of each).
+/// Of isotropic sources also mirror_asymmetry; of a compressed BRDF bytes; of a model table_bytes, lobes, scales,
+/// expression, reciprocal, tables.
 std::string to_json(const SourceReport& report);
 
 }  // namespace burnish

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <burnish/io/illuminant.h>
+#include <burnish/io/part_choice.h>
 #include <burnish/io/sample_file.h>
 #include <burnish/io/speos.h>
 #include <burnish/io/text_reader.h>
@@ -36,8 +37,11 @@ struct Content {
   std::vector<double> rotations_deg, incidences_deg, lambda_nm;
   std::vector<std::vector<std::vector<Block>>> blocks;
   std::string comment;
-  std::string scaling;        // what was made of the stated reflectances
-  bool transmission = false;  // the file has it too
+  std::string scaling;           // what was made of the stated reflectances
+  std::vector<BsdfBlock> parts;  // of the file, in its order
+  std::size_t chosen = 0;        // of these the one that is kept
+
+  bool keeps(std::size_t part) const noexcept { return part == chosen; }
 };
 
 /// The next number, on a later line where this one has none left.
@@ -76,17 +80,34 @@ std::vector<double> next_angles(TextReader& reader, std::string_view what, std::
   return angles;
 }
 
-Block next_block(TextReader& reader) {
+/// Thetas of light that passed through count from 90 to 180 degrees: makes them those of the mirrored directions.
+void mirror_thetas(Block& block) {
+  const std::size_t phis = block.phi_deg.size();
+  std::ranges::reverse(block.theta_deg);
+  for (double& theta : block.theta_deg) theta = 180 - theta;
+  std::vector<double> values;
+  values.reserve(block.values.size());
+  for (std::size_t t = block.theta_deg.size(); t-- > 0;)
+    values.insert(values.end(), block.values.begin() + static_cast<std::ptrdiff_t>(t * phis),
+                  block.values.begin() + static_cast<std::ptrdiff_t>((t + 1) * phis));
+  block.values = std::move(values);
+}
+
+/// A block, of transmission with thetas from 90 to 180 degrees or from 0 to 90.
+Block next_block(TextReader& reader, BsdfPart part) {
   const std::size_t thetas = next_count(reader, "the number of theta", kMaxAngles);
   const std::size_t phis = next_count(reader, "the number of phi", kMaxAngles);
   if (thetas * phis * 2 > reader.remaining())
     reader.fail(fmt::format("{} x {} values", thetas, phis), fmt::format("{} bytes", reader.remaining()));
   Block block;
   block.phi_deg = next_angles(reader, "phi", phis, 360);
+  double least = 0, most = 90;
   for (std::size_t t = 0; t < thetas; ++t) {
     const double theta = next_number(reader, "theta");
-    if (!(theta >= 0 && theta <= 90 + kSameDegree) || (t > 0 && theta <= block.theta_deg.back()))
-      reader.fail("increasing theta in [0, 90] degrees", fmt::format("{}", theta));
+    if (t == 0 && is_transmission(part) && theta >= 90 - kSameDegree) least = 90, most = 180;
+    if (!(theta >= least - kSameDegree && theta <= most + kSameDegree) ||
+        (t > 0 && theta <= block.theta_deg.back()))
+      reader.fail(fmt::format("increasing theta in [{}, {}] degrees", least, most), fmt::format("{}", theta));
     block.theta_deg.push_back(theta);
     for (std::size_t p = 0; p < phis; ++p) {
       const double value = next_number(reader, "a value");
@@ -95,11 +116,13 @@ Block next_block(TextReader& reader) {
       block.values.push_back(value);
     }
   }
+  if (least > 0) mirror_thetas(block);
   return block;
 }
 
 /// The lines that both kinds begin with, up to the type of the values.
-Content read_preamble(TextReader& reader, bool anisotropic) {
+Content read_preamble(TextReader& reader, const std::string& file, const OpenOptions& options,
+                      bool anisotropic) {
   Content content;
   const auto line = [&](const char* what) {
     if (!reader.next_line()) reader.fail(what, "the end of the file");
@@ -119,9 +142,13 @@ Content read_preamble(TextReader& reader, bool anisotropic) {
     for (int k = 0; k < 3; ++k) next_number(reader, "the anisotropy vector");
   const double reflection = next_number(reader, "whether there is reflection");
   const double transmission = next_number(reader, "whether there is transmission");
-  if (reflection != 1 || (transmission != 0 && transmission != 1))
-    reader.fail("reflection, 1 0 or 1 1", fmt::format("{} {}", reflection, transmission));
-  content.transmission = transmission == 1;
+  for (const double given : {reflection, transmission})
+    if ((given != 0 && given != 1) || reflection + transmission == 0)
+      reader.fail("reflection and transmission, 1 0, 0 1 or 1 1",
+                  fmt::format("{} {}", reflection, transmission));
+  if (reflection == 1) content.parts.push_back({BsdfPart::reflection_front, {}});
+  if (transmission == 1) content.parts.push_back({BsdfPart::transmission_front, {}});
+  content.chosen = choose_block(file, content.parts, options);
   content.holds_f = next_number(reader, "the type of the values") != 0;
   return content;
 }
@@ -193,57 +220,85 @@ double value_at(const Block& block, double theta_deg, double phi_deg) noexcept {
   return sum;
 }
 
-/// One block for each rotation and incidence, and the spectrum they are scaled to.
-Content read_anisotropic(TextReader& reader) {
-  Content content = read_preamble(reader, true);
-  if (content.transmission) reader.fail("reflection alone, 1 0, in an anisotropic file", "1 1");
+/// What stands of one part in front of the blocks of a `.anisotropicbsdf`.
+struct PartHead {
+  std::vector<double> rotations_deg, incidences_deg, lambda_nm, shares;
+  double measured_deg = 0;  // the incidence of the spectrum
+};
+
+void read_part_angles(TextReader& reader, PartHead& head) {
   const std::size_t rotations = next_count(reader, "the number of anisotropy angles", kMaxAngles);
-  content.rotations_deg = next_angles(reader, "anisotropy angles", rotations, 360);
+  head.rotations_deg = next_angles(reader, "anisotropy angles", rotations, 360);
   for (std::size_t r = 0; r < rotations; ++r) {
     const std::size_t count = next_count(reader, "the number of incidences", kMaxAngles);
     auto angles = next_angles(reader, "incidences", count, 90);
-    if (r > 0 && angles != content.incidences_deg)
+    if (r > 0 && angles != head.incidences_deg)
       reader.fail("the same incidences for every anisotropy angle", "others");
-    content.incidences_deg = std::move(angles);
+    head.incidences_deg = std::move(angles);
   }
-  const double measured_deg = next_number(reader, "the incidence of the spectrum");
+}
+
+void read_part_spectrum(TextReader& reader, PartHead& head) {
+  head.measured_deg = next_number(reader, "the incidence of the spectrum");
   next_number(reader, "the azimuth of the spectrum");
   reader.next_line();  // its description
   skip_line(reader);
-  std::vector<double> reflectance;
   for (std::size_t n = next_count(reader, "the number of wavelengths", kMaxFileChannels); n > 0; --n) {
-    content.lambda_nm.push_back(next_number(reader, "a wavelength"));
-    reflectance.push_back(next_number(reader, "a reflectance") / 100);
+    head.lambda_nm.push_back(next_number(reader, "a wavelength"));
+    head.shares.push_back(next_number(reader, "a reflectance or transmittance") / 100);
   }
-  std::vector<std::vector<Block>> blocks(rotations);
-  for (auto& of_rotation : blocks)
-    for (std::size_t i = 0; i < content.incidences_deg.size(); ++i) of_rotation.push_back(next_block(reader));
+}
 
-  // the reflectance that the blocks have where the spectrum was measured
-  const auto [first, weight] = place_of(content.incidences_deg, measured_deg);
+/// Makes a channel a wavelength of one part's blocks: scaled to the spectrum, or as they are where they say the same.
+void take_spectrum(const TextReader& reader, PartHead head, std::vector<std::vector<Block>> blocks,
+                   Content& content) {
+  content.rotations_deg = std::move(head.rotations_deg);
+  content.incidences_deg = std::move(head.incidences_deg);
+  content.lambda_nm = std::move(head.lambda_nm);
+  std::vector<double> shares = std::move(head.shares);
+  // the share that the blocks have where the spectrum was measured
+  const auto [first, weight] = place_of(content.incidences_deg, head.measured_deg);
   double found = (1 - weight) * integral(blocks[0][first], content.holds_f);
   if (weight > 0) found += weight * integral(blocks[0][first + 1], content.holds_f);
-  const auto [least, most] = std::minmax_element(reflectance.begin(), reflectance.end());
+  const auto [least, most] = std::minmax_element(shares.begin(), shares.end());
   if (!(*least >= 0 && found > 0)) reader.fail("a positive reflectance", fmt::format("{}", found));
   const bool flat = *least == *most, kept = flat && trusted(*least, found);
   content.scaling = fmt::format(
       "The values integrate to {:.4g} % at {} degrees, stated {:.4g} to {:.4g} %: {}.", 100 * found,
-      measured_deg, 100 * *least, 100 * *most, kept ? "taken as they are" : "scaled");
+      head.measured_deg, 100 * *least, 100 * *most, kept ? "taken as they are" : "scaled");
   if (flat) {
-    reflectance = {kept ? found : *least};
+    shares = {kept ? found : *least};
     if (content.lambda_nm.size() > 1) content.lambda_nm.clear();  // grey; one alone is where it was measured
   }
-  for (const double r : reflectance) {
+  for (const double r : shares) {
     content.blocks.push_back(blocks);
     for (auto& of_rotation : content.blocks.back())
       for (Block& block : of_rotation) scale(block, r / found, reader);
   }
+}
+
+/// One block for each rotation and incidence of each part, and the spectra they are scaled to. Angles of all parts come
+/// first, then their spectra, then their blocks.
+Content read_anisotropic(TextReader& reader, const std::string& file, const OpenOptions& options) {
+  Content content = read_preamble(reader, file, options, true);
+  std::vector<PartHead> heads(content.parts.size());
+  for (PartHead& head : heads) read_part_angles(reader, head);
+  for (PartHead& head : heads) read_part_spectrum(reader, head);
+  std::vector<std::vector<Block>> kept;
+  for (std::size_t part = 0; part < heads.size(); ++part) {
+    std::vector<std::vector<Block>> blocks(heads[part].rotations_deg.size());
+    for (auto& of_rotation : blocks)
+      for (std::size_t i = 0; i < heads[part].incidences_deg.size(); ++i)
+        of_rotation.push_back(next_block(reader, content.parts[part].part));
+    if (content.keeps(part)) kept = std::move(blocks);
+  }
+  take_spectrum(reader, std::move(heads[content.chosen]), std::move(kept), content);
   return content;
 }
 
-/// One block for each incidence and wavelength, each with its reflectance.
-Content read_brdf(TextReader& reader) {
-  Content content = read_preamble(reader, false);
+/// One block for each incidence and wavelength, each with its reflectance; all of reflection before transmission.
+Content read_brdf(TextReader& reader, const std::string& file, const OpenOptions& options) {
+  Content content = read_preamble(reader, file, options, false);
   const std::size_t incidences = next_count(reader, "the number of incidences", kMaxAngles);
   const std::size_t bands = next_count(reader, "the number of wavelengths", kMaxFileChannels);
   content.incidences_deg = next_angles(reader, "incidences", incidences, 90);
@@ -252,22 +307,21 @@ Content read_brdf(TextReader& reader) {
   content.blocks.assign(bands, {{}});
   std::vector<std::vector<double>> factors(bands);
   bool kept = true;
-  for (std::size_t i = 0; i < incidences; ++i)
-    for (std::size_t k = 0; k < bands; ++k) {
-      const double reflectance = next_number(reader, "a reflectance") / 100;
-      content.blocks[k][0].push_back(next_block(reader));
-      const double found = integral(content.blocks[k][0].back(), content.holds_f);
-      if (!(reflectance >= 0 && (found > 0 || reflectance == 0)))
-        reader.fail("a positive reflectance", fmt::format("{}", found));
-      kept = kept && trusted(reflectance, found);
-      factors[k].push_back(found > 0 ? reflectance / found : 0);
-    }
-  // the same sections of transmission, which have to be whole too
-  if (content.transmission)
-    for (std::size_t section = 0; section < incidences * bands; ++section) {
-      next_number(reader, "a transmittance");
-      next_block(reader);
-    }
+  for (std::size_t part = 0; part < content.parts.size(); ++part)
+    for (std::size_t i = 0; i < incidences; ++i)
+      for (std::size_t k = 0; k < bands; ++k) {
+        const BsdfPart which = content.parts[part].part;
+        const double share =
+            next_number(reader, is_transmission(which) ? "a transmittance" : "a reflectance") / 100;
+        Block block = next_block(reader, which);
+        if (!content.keeps(part)) continue;
+        const double found = integral(block, content.holds_f);
+        content.blocks[k][0].push_back(std::move(block));
+        if (!(share >= 0 && (found > 0 || share == 0)))
+          reader.fail("a positive reflectance", fmt::format("{}", found));
+        kept = kept && trusted(share, found);
+        factors[k].push_back(found > 0 ? share / found : 0);
+      }
   content.scaling = kept ? "The values integrate to the stated reflectances: taken as they are."
                          : "The values are scaled to the stated reflectances.";
   if (!kept)
@@ -421,15 +475,23 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
   SpeosFile result;
   Findings& findings = result.findings;
   const bool anisotropic = file.text().starts_with(kAnisotropic);
-  Content content = anisotropic ? read_anisotropic(reader) : read_brdf(reader);
+  Content content =
+      anisotropic ? read_anisotropic(reader, file.name, options) : read_brdf(reader, file.name, options);
   check_wavelengths(file.name, content.lambda_nm);
   findings.format = anisotropic ? "Speos anisotropic BSDF" : "Speos BRDF";
   findings.description = content.comment;
-  if (content.transmission) findings.left_out.push_back("transmission");
-  findings.conventions = {
-      "Angles in degrees; the mirror direction has phi = 0, retroreflection 180.",
-      content.holds_f ? "Values are f_r." : "Values contain cos(theta_o): it is divided out.",
-      content.scaling};
+  note_blocks(content.parts, content.chosen, options, findings);
+  for (std::size_t part = 0; part < content.parts.size(); ++part)
+    if (!content.keeps(part))
+      findings.left_out.push_back(is_transmission(content.parts[part].part) ? "transmission" : "reflection");
+  findings.conventions.insert(
+      findings.conventions.begin(),
+      {findings.transmits() ? "Angles in degrees; the direction straight on has phi = 0."
+                            : "Angles in degrees; the mirror direction has phi = 0, retroreflection 180.",
+       !content.holds_f       ? "Values contain cos(theta_o): it is divided out."
+       : findings.transmits() ? "Values are f_t."
+                              : "Values are f_r.",
+       content.scaling});
 
   // rotations that change nothing
   if (content.rotations_deg.size() > 1 && rotations_alike(content)) {

@@ -24,9 +24,9 @@ bool looks_like_speos(std::string_view text) noexcept;
 /// vary always scale. They make one channel a wavelength, which become linear Rec. 709 unless options.keep_spectral; a
 /// single wavelength stays one channel, a spectrum that does not vary is grey. Rotations that are all alike make it
 /// isotropic; between and beyond others than 67.5 degrees nothing is filled in. Blocks with angles of their own are
-/// interpolated at those of all. Transmission, whose sections follow those of reflection, is left out. Throws Error on
-/// binary files, transmission alone, incidences that differ between rotations,
-/// and whatever does not fit the counts.
+/// interpolated at those of all. Of reflection and transmission, whose thetas count from 90 to 180 degrees and whose
+/// direction straight on is at phi = 0, the options say which is read (choose_block). Throws Error on binary files,
+/// incidences that differ between rotations, and whatever does not fit the counts.
 /// Checked against Ansys' "Structure of Anisotropic BSDF Files" and "Structure of BRDF Files", their definition of the
 /// specular direction, the writers in Ansys' OpticalAutomation scripts, and a `.anisotropicbsdf` of version 11; no
 /// `.brdf` file. Source: [Ansys 2024].

@@ -123,6 +123,44 @@ TEST(Speos, KeepsASingleWavelength) {
     }
 }
 
+// One incidence, one wavelength, two thetas and two phis of a part; thetas of transmission count from 90 to 180.
+TEST(Speos, ReadsTransmissionOfABrdfMirroredThroughTheSurface) {
+  const std::string text =
+      "OPTIS - brdf surface file v8.0\n0\ncomment\n2\n-\n1\t1\n1\n1\t1\n30\n550\n"
+      "31.415927\n2\t2\n0\t180\n0\t0.1\t0.1\n90\t0.1\t0.1\n"
+      "20\n3\t2\n0\t180\n90\t0\t0\n150\t0.3\t0.1\n180\t0.2\t0.2\n";
+  const SpeosFile reflection = parse_speos(memory_file(text), {});
+  EXPECT_EQ(reflection.findings.left_out, std::vector<std::string>{"transmission"});
+  EXPECT_NEAR(value(reflection.table, {0, 0, 1}, {0, 0, 1}), 0.1, 1e-6);
+  const SpeosFile through = parse_speos(memory_file(text), {.part = BsdfPart::transmission_front});
+  EXPECT_EQ(through.findings.left_out, std::vector<std::string>{"reflection"});
+  EXPECT_TRUE(through.findings.transmits());
+  // straight on, at theta 150 and phi 0, is three times as bright as at phi 180
+  const Vec3 wi = spherical_direction(radians(30), kPi);
+  const double straight = value(through.table, wi, mirror(wi)), aside = value(through.table, wi, wi);
+  EXPECT_GT(aside, 0);
+  EXPECT_NEAR(straight / aside, 3, 1e-5);
+  EXPECT_THAT(error_of([&] { parse_speos(memory_file(text), {.part = BsdfPart::reflection_back}); }),
+              HasSubstr("expected part reflection-back, found reflection-front, transmission-front"));
+}
+
+// Angles of both parts, spectra of both, then blocks of both.
+TEST(Speos, ReadsBothPartsOfAnAnisotropicFile) {
+  const std::string text =
+      "OPTIS - Anisotropic BSDF surface file v8.0\n0\ncomment\n2\n-\n0\t1\t0\n1\t1\n1\n"
+      "1\n0\n1\n10\n1\n0\n2\n20\t40\n"
+      "10\t0\nreflection\n1\n550\t62.831853\n20\t0\ntransmission\n1\n550\t15.707963\n"
+      "2 2\n0\t360\n0\t0.2\t0.2\n90\t0.2\t0.2\n"
+      "2 2\n0\t360\n90\t0.05\t0.05\n180\t0.05\t0.05\n"
+      "2 2\n0\t360\n90\t0.07\t0.07\n180\t0.07\t0.07\n";
+  const SpeosFile reflection = parse_speos(memory_file(text), {}),
+                  through = parse_speos(memory_file(text), {.part = BsdfPart::transmission_front});
+  EXPECT_NEAR(value(reflection.table, {0, 0, 1}, {0, 0, 1}), 0.2, 1e-5);
+  EXPECT_EQ(through.table.axes[1].nodes.size(), 2u);
+  EXPECT_NEAR(value(through.table, spherical_direction(radians(20), 1), {0, 0, 1}), 0.05, 1e-5);
+  EXPECT_NEAR(value(through.table, spherical_direction(radians(40), 1), {0, 0, 1}), 0.07, 1e-5);
+}
+
 TEST(Speos, SaysWhatIsWrong) {
   const auto error = [](std::string text, std::string_view from, std::string_view to) {
     const std::size_t at = text.find(from);
@@ -131,8 +169,7 @@ TEST(Speos, SaysWhatIsWrong) {
     return error_of([&] { parse_speos(memory_file(text), {}); });
   };
   EXPECT_THAT(error(seeds::kSpeos, "v8.0\n0", "v8.0\n1"), HasSubstr("text mode, 0"));
-  EXPECT_THAT(error(seeds::kSpeos, "1\t0\n0\n", "1\t1\n0\n"), HasSubstr("reflection alone"));
-  EXPECT_THAT(error(brdf_text(0.5), "1\t0\n1\n", "0\t1\n1\n"), HasSubstr("reflection, 1 0 or 1 1"));
+  EXPECT_THAT(error(seeds::kSpeos, "1\t0\n0\n", "0\t0\n0\n"), HasSubstr("1 0, 0 1 or 1 1, found 0 0"));
   EXPECT_THAT(error(brdf_text(0.5), "1\t0\n1\n", "1\t1\n1\n"), HasSubstr("a number for a transmittance"));
   EXPECT_THAT(error(seeds::kSpeos, "0 90\n", "90 0\n"), HasSubstr("increasing anisotropy angles"));
   EXPECT_THAT(error(seeds::kSpeos, "30\n1\n30\n", "30\n1\n31\n"), HasSubstr("the same incidences"));

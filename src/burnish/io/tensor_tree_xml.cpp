@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -8,6 +11,7 @@
 #include <burnish/io/text_reader.h>
 #include <burnish/io/window_xml.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/spectrum.h>
 
 namespace burnish {
 
@@ -131,36 +135,54 @@ TensorTreeFile parse_tensor_tree(const FileBytes& file, const OpenOptions& optio
   if (!rank_3 && !same_name(structure, "TensorTree4"))
     xml.fail("IncidentDataStructure TensorTree3 or TensorTree4", in_quotes(structure));
 
-  // one side's block, the other's where there is no other
-  ReflectionBlock reflection = xml.reflection(options.back_side);
-  const pugi::xml_node block = reflection.node;
-  if (const std::string_view basis = trimmed(block.child_value("AngleBasis"));
-      !same_name(basis, "LBNL/Shirley-Chiu"))
-    xml.fail("AngleBasis LBNL/Shirley-Chiu", in_quotes(basis));
-
   TensorTreeFile result;
-  const int rank = rank_3 ? 3 : 4;
-  result.table = BraceReader(xml, block.child_value("ScatteringData"), rank).read();
   Findings& findings = result.findings;
-  for (const TreeLeaf& leaf : leaves(result.table)) {
-    ++findings.sample_count;
-    findings.negative_count += leaf.value < 0;
-    findings.most_negative = std::min(findings.most_negative, static_cast<double>(leaf.value));
+  const ChosenBlock chosen = xml.choose(options, findings);
+  std::vector<TensorTree> trees;
+  for (const pugi::xml_node block : chosen.nodes) {
+    if (const std::string_view basis = trimmed(block.child_value("AngleBasis"));
+        !same_name(basis, "LBNL/Shirley-Chiu"))
+      xml.fail("AngleBasis LBNL/Shirley-Chiu", in_quotes(basis));
+    trees.push_back(BraceReader(xml, block.child_value("ScatteringData"), rank_3 ? 3 : 4).read());
   }
-  findings.format = fmt::format("tensor tree XML of rank {}", rank);
+  for (const TensorTree& tree : trees)
+    for (const TreeLeaf& leaf : leaves(tree)) {
+      findings.sample_count += &tree == trees.data();
+      findings.negative_count += leaf.value < 0;
+      findings.most_negative = std::min(findings.most_negative, static_cast<double>(leaf.value));
+    }
+  result.table = std::move(trees.front());
+  result.colour.assign(std::make_move_iterator(trees.begin() + 1), std::make_move_iterator(trees.end()));
+
+  findings.format = fmt::format("tensor tree XML of rank {}", rank_3 ? 3 : 4);
   findings.description = xml.material();
-  findings.conventions = {
-      fmt::format("{}; values are f_r without the cosine.", reflection.sentence),
-      "Incident directions are those the light travels to: the mirror direction has the same place.",
-      "Constant over each cube, as Radiance evaluates it."};
-  if (rank == 3) findings.conventions.push_back("Isotropic.");
+  findings.conventions.insert(
+      findings.conventions.begin(),
+      {fmt::format("{}; values are f_{} without the cosine.", chosen.sentence,
+                   findings.transmits() ? 't' : 'r'),
+       "Incident directions are those the light travels to: the mirror direction has the same place.",
+       "Constant over each cube, as Radiance evaluates it."});
+  if (rank_3) findings.conventions.push_back("Isotropic.");
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
-  findings.side = std::move(reflection.side);
-  findings.left_out = std::move(reflection.left_out);
   return result;
 }
 
-std::string format_tensor_tree(const TensorTree& tree, std::string_view material, std::string_view side) {
+FunctionBrdf colour_of(TensorTreeFile file) {
+  std::vector<TensorTree> xyz = std::move(file.colour);
+  xyz.insert(xyz.begin(), std::move(file.table));
+  const bool isotropic = xyz[0].isotropic();
+  return {3, isotropic,
+          [xyz = std::move(xyz)](std::span<const DirectionPair> pairs, std::span<double> values) {
+            for (std::size_t i = 0; i < pairs.size(); ++i) {
+              std::array<double, 3> f;
+              for (std::size_t c = 0; c < 3; ++c) xyz[c].eval_raw(pairs[i].wi, pairs[i].wo, {&f[c], 1});
+              std::ranges::copy(rec709_of_equal_energy(f), &values[3 * i]);
+            }
+            cut_negatives(values);
+          }};
+}
+
+std::string format_tensor_tree(const TensorTree& tree, std::string_view material, const BsdfBlock& block) {
   std::string braces;
   add_braces(tree, 0, braces);
   return fmt::format(
@@ -172,13 +194,14 @@ std::string format_tensor_tree(const TensorTree& tree, std::string_view material
       "<Material>\n<Name>{}</Name>\n<Manufacturer>unknown</Manufacturer>\n<DeviceType>Other</DeviceType>\n"
       "</Material>\n<DataDefinition>\n<IncidentDataStructure>TensorTree{}</IncidentDataStructure>\n"
       "</DataDefinition>\n<WavelengthData>\n<LayerNumber>System</LayerNumber>\n"
-      "<Wavelength unit=\"Integral\">Visible</Wavelength>\n<WavelengthDataBlock>\n"
+      "<Wavelength unit=\"Integral\">{}</Wavelength>\n<WavelengthDataBlock>\n"
       "<WavelengthDataDirection>{}</WavelengthDataDirection>\n"
       "<AngleBasis>LBNL/Shirley-Chiu</AngleBasis>\n<ScatteringDataType>BTDF</ScatteringDataType>\n"
       "<ScatteringData>\n{}</ScatteringData>\n</WavelengthDataBlock>\n</WavelengthData>\n</Layer>\n</"
       "Optical>\n"
       "</WindowElement>\n",
-      escaped(material), tree.rank, side, braces);
+      escaped(material), tree.rank, escaped(block.band.empty() ? "Visible" : block.band),
+      window_direction(block.part), braces);
 }
 
 }  // namespace burnish

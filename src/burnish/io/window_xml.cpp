@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include <burnish/io/part_choice.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/io/window_xml.h>
 
@@ -19,16 +21,83 @@ std::string_view direction_of(pugi::xml_node block) {
   return trimmed(block.child_value("WavelengthDataDirection"));
 }
 
-/// The visible spectrum first, then what says nothing, then others.
-int rank_of(pugi::xml_node data) {
-  const std::string_view wavelength = wavelength_of(data);
-  return same_name(wavelength, "Visible") ? 0
-         : same_name(wavelength, "CIE-Y") ? 1
-         : wavelength.empty()             ? 2
-                                          : 3;
+/// The part that a file's WavelengthDataDirection names; nothing for others, such as absorptances.
+std::optional<BsdfPart> part_in_direction(std::string_view direction) noexcept {
+  for (const BsdfPart part : kBsdfParts)
+    if (same_name(direction, window_direction(part))) return part;
+  return std::nullopt;
+}
+
+/// One block of the file, or the three of CIE-XYZ.
+struct FileBlock {
+  BsdfBlock block;
+  std::vector<pugi::xml_node> nodes;
+};
+
+const FileBlock* find_band(const std::vector<FileBlock>& blocks, BsdfPart part, std::string_view band) {
+  const auto found = std::ranges::find_if(
+      blocks, [&](const FileBlock& b) { return b.block.part == part && same_name(b.block.band, band); });
+  return found == blocks.end() ? nullptr : &*found;
+}
+
+/// Adds the colour of each part that has X, Y and Z.
+void add_colours(std::vector<FileBlock>& blocks) {
+  for (const BsdfPart part : kBsdfParts) {
+    const FileBlock *x = find_band(blocks, part, "CIE-X"), *z = find_band(blocks, part, "CIE-Z"),
+                    *y = find_band(blocks, part, "CIE-Y");
+    if (!y) y = find_band(blocks, part, "Visible");
+    if (x && y && z)
+      blocks.push_back({{part, std::string(kColourBand)}, {x->nodes[0], y->nodes[0], z->nodes[0]}});
+  }
+}
+
+/// The blocks that are none of `taken`, each named once: "Transmission Front (Visible)".
+std::vector<std::string> other_blocks(pugi::xml_node layer, const std::vector<pugi::xml_node>& taken) {
+  std::vector<std::string> others;
+  std::size_t more = 0;
+  for (const pugi::xml_node data : layer.children("WavelengthData"))
+    for (const pugi::xml_node block : data.children("WavelengthDataBlock")) {
+      if (std::ranges::find(taken, block) != taken.end()) continue;
+      std::string name = printable(direction_of(block), 40);
+      if (const std::string_view wavelength = wavelength_of(data); !wavelength.empty())
+        name += fmt::format(" ({})", printable(wavelength, 40));
+      if (std::ranges::find(others, name) != others.end()) continue;
+      if (others.size() < kMaxListed)
+        others.push_back(std::move(name));
+      else
+        ++more;
+    }
+  if (more > 0) others.push_back(fmt::format("{} more blocks", more));
+  return others;
+}
+
+/// What was taken: "'Reflection Back', the only reflection there is, visible spectrum".
+std::string sentence_of(const std::vector<BsdfBlock>& blocks, const BsdfBlock& taken,
+                        const OpenOptions& options) {
+  std::string sentence = fmt::format("'{}'", window_direction(taken.part));
+  const auto has = [&](const auto& what) { return std::ranges::any_of(blocks, what); };
+  if (!options.part && !is_transmission(taken.part) && is_back(taken.part) != options.back_side)
+    sentence += ", the only reflection there is";
+  if (same_name(taken.band, "Visible"))
+    sentence += ", visible spectrum";
+  else if (taken.band == kColourBand)
+    sentence += ", X, Y and Z under equal energy became linear Rec. 709";
+  else if (!taken.band.empty())
+    sentence += fmt::format(
+        ", {}{}", taken.band,
+        has([&](const BsdfBlock& b) { return b.part == taken.part && same_name(b.band, "Visible"); })
+            ? ""
+            : ", no Visible block");
+  return sentence;
 }
 
 }  // namespace
+
+std::string_view window_direction(BsdfPart part) noexcept {
+  constexpr std::string_view kNames[] = {"Reflection Front", "Reflection Back", "Transmission Front",
+                                         "Transmission Back"};
+  return kNames[static_cast<std::size_t>(part)];
+}
 
 bool looks_like_window_xml(std::string_view text) noexcept {
   const std::size_t first = text.substr(0, 4096).find('<');
@@ -71,50 +140,26 @@ double WindowXml::number(pugi::xml_node node, const char* child) const {
   fail(fmt::format("a number in {}", child), in_quotes(text));
 }
 
-ReflectionBlock WindowXml::reflection(bool back) const {
-  const std::string_view asked = back ? "Reflection Back" : "Reflection Front",
-                         other = back ? "Reflection Front" : "Reflection Back";
-  pugi::xml_node found_data;
-  ReflectionBlock found;
-  for (const std::string_view direction : {asked, other}) {
-    for (const pugi::xml_node data : layer_.children("WavelengthData"))
-      for (const pugi::xml_node block : data.children("WavelengthDataBlock"))
-        if (same_name(direction_of(block), direction) &&
-            (!found_data || rank_of(data) < rank_of(found_data))) {
-          found_data = data;
-          found.node = block;
-        }
-    if (!found.node) continue;
-    found.side = direction;
-    break;
-  }
-
-  // what else there is
+ChosenBlock WindowXml::choose(const OpenOptions& options, Findings& findings) const {
+  std::vector<FileBlock> found;
   std::string present;
-  std::size_t more = 0;
   for (const pugi::xml_node data : layer_.children("WavelengthData"))
-    for (const pugi::xml_node block : data.children("WavelengthDataBlock")) {
-      if (present.size() < 160) present += (present.empty() ? "" : ", ") + in_quotes(direction_of(block));
-      if (block == found.node) continue;
-      const std::string_view wavelength = wavelength_of(data);
-      std::string name = printable(direction_of(block), 40);
-      if (!wavelength.empty()) name += fmt::format(" ({})", printable(wavelength, 40));
-      if (std::find(found.left_out.begin(), found.left_out.end(), name) != found.left_out.end()) continue;
-      if (found.left_out.size() < kMaxListed)
-        found.left_out.push_back(std::move(name));
-      else
-        ++more;
+    for (const pugi::xml_node node : data.children("WavelengthDataBlock")) {
+      if (present.size() < 160) present += (present.empty() ? "" : ", ") + in_quotes(direction_of(node));
+      const auto part = part_in_direction(direction_of(node));
+      const std::string band = printable(wavelength_of(data), 40);
+      if (part && !find_band(found, *part, band)) found.push_back({{*part, band}, {node}});
     }
-  if (!found.node) fail(fmt::format("a WavelengthDataBlock '{}'", asked), present.empty() ? "none" : present);
-  if (more > 0) found.left_out.push_back(fmt::format("{} more blocks", more));
+  if (found.empty())
+    fail("a WavelengthDataBlock 'Reflection Front' or of another part", present.empty() ? "none" : present);
+  add_colours(found);
 
-  found.sentence = fmt::format("'{}'", found.side);
-  if (found.side != asked) found.sentence += ", the only reflection there is";
-  if (const int rank = rank_of(found_data); rank == 0)
-    found.sentence += ", visible spectrum";
-  else if (rank != 2)
-    found.sentence += fmt::format(", {}, no Visible block", printable(wavelength_of(found_data), 40));
-  return found;
+  std::vector<BsdfBlock> blocks;
+  for (const FileBlock& each : found) blocks.push_back(each.block);
+  const std::size_t chosen = choose_block(name_, blocks, options);
+  note_blocks(blocks, chosen, options, findings);
+  findings.left_out = other_blocks(layer_, found[chosen].nodes);
+  return {.nodes = found[chosen].nodes, .sentence = sentence_of(blocks, blocks[chosen], options)};
 }
 
 }  // namespace burnish

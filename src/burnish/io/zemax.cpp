@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <burnish/io/part_choice.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/angles.h>
@@ -93,8 +94,8 @@ Header read_header(TextReader& reader) {
   for (const char* keyword : {"samplerotation", "angleofincidence", "scatterazimuth"})
     if (!header.angles.contains(keyword)) reader.fail(fmt::format("the keyword {}", keyword), "none");
 
-  if (header.words["scattertype"] != "brdf")
-    reader.fail("ScatterType BRDF", in_quotes(header.words["scattertype"]));
+  if (header.words["scattertype"] != "brdf" && header.words["scattertype"] != "btdf")
+    reader.fail("ScatterType BRDF or BTDF", in_quotes(header.words["scattertype"]));
   const std::string& symmetry = header.words["symmetry"];
   if (symmetry != "planesymmetrical" && symmetry != "asymmetrical" && symmetry != "asymmetrical4d")
     reader.fail("Symmetry PlaneSymmetrical, Asymmetrical or Asymmetrical4D", in_quotes(symmetry));
@@ -203,32 +204,67 @@ std::vector<double> read_channel(TextReader& reader, const TableSizes& sizes, do
   return totals;
 }
 
+/// The luminance of what a channel or three say.
+double luminance_of_channels(const std::vector<double>& values) noexcept {
+  return values.size() == 1 ? values[0]
+                            : 0.2126 * values[0] + 0.7152 * values[1] + 0.0722 * values[2];  // [ITU 2015]
+}
+
+/// The integral of the values at a block's incidence.
+double integral_of_block(const AngleTable& table, std::size_t rotation, std::size_t incidence,
+                         double accuracy) {
+  const Vec3 wi = spherical_direction(table.axes[1].nodes[incidence], table.axes[0].nodes[rotation]);
+  return luminance_of_channels(directional_albedo(table, wi, accuracy).albedo);
+}
+
+constexpr double kTrustedTotal = 0.05;  // of TIS: quadrature and rounding
+constexpr double kMostTotalTheta = radians(85);
+
 /// Compares the values' integrals at a few incidences of the first rotation with what TIS states of them, of the
 /// channel that is luminance.
 void check_totals(const AngleTable& table, const std::vector<double>& stated, Findings& findings) {
   constexpr std::size_t kMostIncidences = 4;
-  constexpr double kTrusted = 0.05, kAccuracy = 0.02, kMostTheta = radians(85);
+  constexpr double kAccuracy = 0.02;
   const std::vector<double>& incidences = table.axes[1].nodes;
   const std::size_t step = (incidences.size() + kMostIncidences - 1) / kMostIncidences;
   double worst = 0, worst_found = 0;
   std::size_t worst_at = 0, compared = 0;
   for (std::size_t i = 0; i < incidences.size(); i += step) {
-    if (!(stated[i] > 0) || incidences[i] > kMostTheta) continue;
-    const Vec3 wi = spherical_direction(incidences[i], table.axes[0].nodes.front());
-    const std::vector<double> albedo = directional_albedo(table, wi, kAccuracy).albedo;
-    const double found = albedo.size() == 1
-                             ? albedo[0]
-                             : 0.2126 * albedo[0] + 0.7152 * albedo[1] + 0.0722 * albedo[2];  // [ITU 2015]
+    if (!(stated[i] > 0) || incidences[i] > kMostTotalTheta) continue;
+    const double found = integral_of_block(table, 0, i, kAccuracy);
     ++compared;
-    const double off = std::abs(found - stated[i]) / std::max(stated[i], kTrusted);
+    const double off = std::abs(found - stated[i]) / std::max(stated[i], kTrustedTotal);
     if (off > worst) worst = off, worst_found = found, worst_at = i;
   }
-  if (worst > kTrusted)
+  if (worst > kTrustedTotal)
     findings.warnings.push_back(fmt::format(
-        "The values integrate to {:.3g} % at theta_i = {:.3g} degrees, TIS says {:.3g} %: taken as they are.",
+        "The values integrate to {:.3g} % at theta_i = {:.3g} degrees, TIS says {:.3g} %: taken as they are "
+        "(--scale-to-tis scales them).",
         100 * worst_found, degrees(incidences[worst_at]), 100 * stated[worst_at]));
   else if (compared > 0)
     findings.conventions.push_back("The values integrate to the stated TIS.");
+}
+
+/// Scales each block to its TIS, as Ansys does. Blocks without a positive TIS or integral, or near grazing, where the
+/// table ends, take the factor of the incidence before.
+void scale_to_totals(AngleTable& table, const std::vector<double>& stated, Findings& findings) {
+  const std::size_t rotations = table.axes[0].nodes.size(), incidences = table.axes[1].nodes.size();
+  const std::size_t block = table.values.size() / (rotations * incidences);
+  std::vector<double> factors(stated.size(), 1.0);
+  for (std::size_t b = 0; b < factors.size(); ++b) {
+    const double found = table.axes[1].nodes[b % incidences] > kMostTotalTheta
+                             ? 0
+                             : integral_of_block(table, b / incidences, b % incidences, kAlbedoTolerance);
+    if (found > 0 && stated[b] > 0)
+      factors[b] = stated[b] / found;
+    else if (b % incidences > 0)
+      factors[b] = factors[b - 1];
+  }
+  for (std::size_t k = 0; k < table.values.size(); ++k)
+    table.values[k] = static_cast<float>(static_cast<double>(table.values[k]) * factors[k / block]);
+  findings.most_negative *= std::ranges::max(factors);
+  findings.conventions.push_back(fmt::format("The values were scaled to TIS, by {:.4g} to {:.4g}.",
+                                             std::ranges::min(factors), std::ranges::max(factors)));
 }
 
 /// Makes the table's values of what was read, grey or XYZ, and notes holes, negatives and angles.
@@ -319,7 +355,7 @@ bool looks_like_zemax(std::string_view text) noexcept {
   return line.starts_with("Source ") || line.starts_with("Source\t");
 }
 
-ZemaxFile parse_zemax(const FileBytes& file) {
+ZemaxFile parse_zemax(const FileBytes& file, const OpenOptions& options) {
   TextReader reader(file);
   Header header = read_header(reader);
   const bool monochrome = header.words["spectralcontent"] == "monochrome";
@@ -361,19 +397,27 @@ ZemaxFile parse_zemax(const FileBytes& file) {
   findings.theta_o_min = kHalfPi;
   fill_values(read, header, sizes, result);
 
-  findings.format = "Zemax tabular BRDF";
+  const bool transmits = header.words["scattertype"] == "btdf";
+  const BsdfBlock only{transmits ? BsdfPart::transmission_front : BsdfPart::reflection_front, {}};
+  findings.format = transmits ? "Zemax tabular BTDF" : "Zemax tabular BRDF";
   findings.description = sample_name(file);
   findings.sample_count = sizes.entries();
   findings.conventions = {
-      "Azimuth and radial angles are around and from the mirror direction, azimuth 0 to the normal; linear "
-      "between them.",
+      transmits ? "Azimuth and radial angles are around and from the direction straight on, azimuth 0 to the "
+                  "normal; linear between them."
+                : "Azimuth and radial angles are around and from the mirror direction, azimuth 0 to the "
+                  "normal; linear between them.",
       "Entries of exactly zero are holes.",
       table.isotropic() ? "One sample rotation: taken as isotropic."
                         : "Sample rotation r puts the light at phi_i = r + 90 degrees.",
       monochrome ? "Monochrome." : "XYZ became linear Rec. 709 for a D65 white."};
   if (table.folded) findings.conventions.push_back("Symmetric about the plane of incidence.");
   findings.comments = comments_of(file);
-  check_totals(table, totals, findings);
+  note_blocks({&only, 1}, choose_block(file.name, {&only, 1}, options), options, findings);
+  if (options.scale_to_tis)
+    scale_to_totals(table, totals, findings);
+  else
+    check_totals(table, totals, findings);
   return result;
 }
 
@@ -405,7 +449,7 @@ bool fits_zemax(const AngleTable& table) noexcept {
 }
 
 std::string format_zemax(const AngleTable& table, std::string_view sample,
-                         std::span<const std::string> comments) {
+                         std::span<const std::string> comments, BsdfPart part) {
   if (!fits_zemax(table))
     throw Error("Zemax table: expected values around the mirror direction, grey or RGB");
   const auto& axes = table.axes;
@@ -414,11 +458,11 @@ std::string format_zemax(const AngleTable& table, std::string_view sample,
   std::string text;
   for (const std::string& comment : comments) text += fmt::format("#{}\n", comment);
   if (comments.empty()) text = fmt::format("# Sample: {}\n", printable(sample, 200));
-  text += fmt::format("Source\tMeasured\nSymmetry\t{}\nSpectralContent\t{}\nScatterType\tBRDF\n",
+  text += fmt::format("Source\tMeasured\nSymmetry\t{}\nSpectralContent\t{}\nScatterType\t{}\n",
                       table.folded        ? "PlaneSymmetrical"
                       : table.isotropic() ? "Asymmetrical"
                                           : "Asymmetrical4D",
-                      monochrome ? "Monochrome" : "XYZ");
+                      monochrome ? "Monochrome" : "XYZ", is_transmission(part) ? "BTDF" : "BRDF");
   append_angles(text, "SampleRotation", axes[0], 90);
   append_angles(text, "AngleOfIncidence", axes[1]);
   append_angles(text, "ScatterAzimuth", axes[2]);

@@ -187,8 +187,32 @@ TEST(Zemax, WritesZeroSaturationAndTotals) {
     }
 }
 
+TEST(Zemax, ReadsAndWritesABtdfAsTransmission) {
+  const std::string text = replaced(lambertian("0.1"), "BRDF", "BTDF");
+  const ZemaxFile file = parse_zemax(memory_file(text));
+  EXPECT_EQ(file.findings.format, "Zemax tabular BTDF");
+  EXPECT_TRUE(file.findings.transmits());
+  EXPECT_EQ(file.table.values, parse_zemax(memory_file(lambertian("0.1"))).table.values);
+  const std::string again = format_zemax(file.table, "", {}, BsdfPart::transmission_front);
+  EXPECT_THAT(again, HasSubstr("ScatterType\tBTDF\n"));
+  EXPECT_EQ(parse_zemax(memory_file(again)).table.values, file.table.values);
+  EXPECT_THAT(error_of([&] { parse_zemax(memory_file(text), {.part = BsdfPart::reflection_front}); }),
+              HasSubstr("expected part reflection-front, found transmission-front"));
+}
+
+// Ansys scales each block to its TIS.
+TEST(Zemax, ScalesBlocksToTisWhereAsked) {
+  const std::string text = replaced(lambertian("0.3"), "TIS 0.3", "TIS 0.2");  // the first block's
+  const ZemaxFile scaled = parse_zemax(memory_file(text), {.scale_to_tis = true});
+  EXPECT_THAT(scaled.findings.warnings, IsEmpty());
+  EXPECT_THAT(scaled.findings.conventions, Contains(StartsWith("The values were scaled to TIS, by 2")));
+  const std::size_t block = scaled.table.values.size() / 2;
+  EXPECT_NEAR(scaled.table.values.front(), 0.063662, 0.0005);
+  EXPECT_NEAR(scaled.table.values[block], 0.095493, 0.0008);
+}
+
 TEST(Zemax, SaysWhatIsWrong) {
-  EXPECT_THAT(zemax_error(replaced(kHeader, "BRDF", "BTDF")), HasSubstr("ScatterType BRDF"));
+  EXPECT_THAT(zemax_error(replaced(kHeader, "BRDF", "BSDF")), HasSubstr("ScatterType BRDF or BTDF"));
   EXPECT_THAT(zemax_error(replaced(kHeader, "Symmetry\tPlaneSymmetrical\n", "")),
               HasSubstr("keyword symmetry"));
   EXPECT_THAT(zemax_error(replaced(kHeader, "ScatterRadial", "Scatter")), HasSubstr("keyword of the header"));

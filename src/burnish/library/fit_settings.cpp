@@ -76,13 +76,18 @@ std::string settings_text(const FitOptions& options) {
 }
 
 std::string settings_text(const OpenOptions& options) {
-  return text_of(Json{{"spectral", options.keep_spectral},
-                      {"illuminant", options.illuminant},
-                      {"has_cosine", options.has_cosine},
-                      {"clamp_negatives", options.clamp_negatives},
-                      {"back", options.back_side},
-                      {"has_cosine_o", options.has_cosine_o},
-                      {"brf", options.brf}});
+  Json json{{"spectral", options.keep_spectral},
+            {"illuminant", options.illuminant},
+            {"has_cosine", options.has_cosine},
+            {"clamp_negatives", options.clamp_negatives},
+            {"back", options.back_side},
+            {"has_cosine_o", options.has_cosine_o},
+            {"brf", options.brf}};
+  // named where they are set alone, so that the settings of earlier fits stay what they were
+  if (options.part) json["part"] = to_string(*options.part);
+  if (!options.band.empty()) json["band"] = options.band;
+  if (options.scale_to_tis) json["scale_to_tis"] = true;
+  return text_of(json);
 }
 
 std::string settings_text(const ExportOptions& options) {

@@ -242,6 +242,11 @@ std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda
   return weights;
 }
 
+std::array<double, 3> rec709_of_equal_energy(const std::array<double, 3>& xyz) noexcept {
+  const Vec3 rgb = rec709_of_xyz(adapt({xyz[0], xyz[1], xyz[2]}, {1, 1, 1}));
+  return {rgb.x, rgb.y, rgb.z};
+}
+
 std::array<double, 4> spectrum_of_colour(std::span<const double, 3> rgb) {
   static const Matrix3 inverse = [] {
     const auto weights = rec709_weights(kColourNodes_nm, "E");

@@ -43,6 +43,10 @@ std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda
 /// Under standard_illuminant(name).
 std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda_nm, std::string_view name);
 
+/// Linear Rec. 709 of a reflectance's or transmittance's X, Y, Z under equal energy, where white has X = Y = Z = 1: the
+/// white is adapted as in rec709_weights and becomes (1, 1, 1). Saturated colours have values below zero.
+std::array<double, 3> rec709_of_equal_energy(const std::array<double, 3>& xyz) noexcept;
+
 /// The nodes of a spectrum that shows a colour: linear Rec. 709's blue up to the first, green between the second and
 /// the third, red from the last on. At these places no colour takes a value below zero.
 inline constexpr std::array<double, 4> kColourNodes_nm{475, 510, 580, 605};

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include <burnish/reflectance/bsdf_part.h>
 
 namespace burnish {
 
@@ -33,8 +36,13 @@ struct Findings {
   std::vector<std::string>
       warnings;  ///< what may be wrong with the file or how it was read, one sentence each
   std::vector<std::string> left_out;  ///< what else the file holds: "Transmission Front (Visible)"
-  std::string side;                   ///< of a window system the reflection that was read; empty elsewhere
+  std::vector<BsdfBlock> blocks;  ///< every part and band that the file holds, where its format has several
+  /// The part and band that were read, or that a model was fitted to; nothing where a format has reflection alone.
+  std::optional<BsdfBlock> block;
   std::vector<std::string> comments;  ///< remarks of a format that keeps them, without their marks
+
+  /// Returns true of transmission, whose wo is mirrored through the surface: see BsdfPart.
+  bool transmits() const noexcept { return block && is_transmission(block->part); }
 };
 
 }  // namespace burnish

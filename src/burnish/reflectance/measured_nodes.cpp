@@ -209,10 +209,11 @@ void each_node(const PatchTable& table, const Visit& visit) {
   for (std::size_t o = 0; o < table.outgoing.size(); ++o)
     for (std::size_t i = 0; i < table.incident.size(); ++i) {
       const DirectionPair pair{table.incident.centre(i), table.outgoing.centre(o)};
-      const double f = static_cast<double>(table.values[o * table.incident.size() + i]);
+      const float* stored = &table.values[(o * table.incident.size() + i) * table.channel_count];
+      const std::vector<double> f(stored, stored + table.channel_count);
       // A patch weighs as much of both hemispheres as it covers.
       const double weight = table.incident.projected_solid_angle(i) * table.outgoing.projected_solid_angle(o);
-      if (lies_above(pair)) visit({.pair = pair, .f = {&f, 1}, .weight = weight});
+      if (lies_above(pair)) visit({.pair = pair, .f = f, .weight = weight});
     }
 }
 
@@ -299,7 +300,7 @@ MeasuredNodes measured_nodes(const AngleTable& table) {
 }
 
 MeasuredNodes measured_nodes(const PatchTable& table) {
-  return finished(with_mean_weight(collected(table, 1, false)));
+  return finished(with_mean_weight(collected(table, table.channel_count, false)));
 }
 
 MeasuredNodes measured_nodes(const TensorTree& table) {

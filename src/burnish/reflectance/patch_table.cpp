@@ -63,18 +63,21 @@ bool PatchTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
 }
 
 bool PatchTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-  f[0] = 0;
+  std::ranges::fill(f, 0.0);
   if (wi.z <= 0 || wo.z <= 0) return true;
-  f[0] = static_cast<double>(values[outgoing.patch_of(wo) * incident.size() + incident.patch_of(wi)]);
+  const std::size_t pair = outgoing.patch_of(wo) * incident.size() + incident.patch_of(wi);
+  for (std::size_t c = 0; c < channel_count; ++c)
+    f[c] = static_cast<double>(values[pair * channel_count + c]);
   return true;
 }
 
-double PatchTable::albedo(Vec3 wi) const noexcept {
+double PatchTable::albedo(Vec3 wi, std::size_t channel) const noexcept {
   // The albedo is the sum of f times the projected solid angle of each outgoing patch.
   double sum = 0;
   const std::size_t column = incident.patch_of(wi);
   for (std::size_t o = 0; o < outgoing.size(); ++o)
-    sum += static_cast<double>(values[o * incident.size() + column]) * outgoing.projected_solid_angle(o);
+    sum += static_cast<double>(values[(o * incident.size() + column) * channel_count + channel]) *
+           outgoing.projected_solid_angle(o);
   return sum;
 }
 

@@ -13,6 +13,8 @@ struct PatchRing {
   double theta_low = 0, theta_high = 0;  ///< radians
   std::size_t count = 1;
   std::size_t first = 0;  ///< index of its patch 0 in the basis
+
+  friend bool operator==(const PatchRing&, const PatchRing&) = default;
 };
 
 /// A hemisphere cut into rings of patches, counted from the normal outwards.
@@ -27,21 +29,24 @@ struct PatchBasis {
   Vec3 centre(std::size_t patch) const noexcept;
   /// Integral of the cosine over a patch, sr; their sum is pi for a full hemisphere.
   double projected_solid_angle(std::size_t patch) const noexcept;
+
+  friend bool operator==(const PatchBasis&, const PatchBasis&) = default;
 };
 
 /// An anisotropic matrix of f_r averaged over pairs of patches, as window systems are measured.
 struct PatchTable {
   PatchBasis incident, outgoing;
-  std::vector<float> values;  ///< [outgoing][incident], 1/sr, grey
+  std::vector<float> values;  ///< [outgoing][incident][channel], 1/sr
+  std::size_t channel_count = 1;
 
-  std::size_t channels() const noexcept { return 1; }
+  std::size_t channels() const noexcept { return channel_count; }
   bool isotropic() const noexcept { return false; }
   /// Constant over pairs of patches, as Radiance evaluates it: what a patch receives is reflected, no more and no
   /// less. Between patch centres a peak as narrow as a patch would have another energy.
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
   bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
-  /// Returns the share of light from wi that is reflected, exact: a sum over patches.
-  double albedo(Vec3 wi) const noexcept;
+  /// Returns the share of light from wi that leaves the table's side, exact: a sum over patches.
+  double albedo(Vec3 wi, std::size_t channel = 0) const noexcept;
 };
 
 static_assert(HasRawValues<PatchTable>);

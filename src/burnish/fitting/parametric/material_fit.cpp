@@ -103,6 +103,9 @@ MaterialFit fit_material(const Source& source, std::string_view target, const Ma
   if (source.ref().channels() != 1 && source.ref().channels() != 3)
     throw Error(fmt::format("{}: expected 1 or 3 channels for {}, found {}", source.name, target,
                             source.ref().channels()));
+  if (source.findings.transmits())
+    throw Error::in_file(source.name, fmt::format("a reflection for {}", target),
+                         to_string(*source.findings.block));
   const SymmetrizedBrdf symmetrized(source.ref());
   const BrdfRef brdf = is_measurement(source) ? BrdfRef(symmetrized) : source.ref();
   const Scorer scorer(brdf, options.figures);
