@@ -316,7 +316,7 @@ TEST(Klems, ReadsAShadeFabricThatReflectsLessThanItGets) {
 }
 
 /// Degrees of a pair of directions, none on a border of patches.
-constexpr double kAngles[][4] = {
+constexpr double kPairsOfRadiance[][4] = {
     {10, 20, 12, 205}, {40, 100, 38, 275}, {60, 230, 22, 70}, {70, 310, 72, 125}, {30, 0, 50, 90}};
 
 // Values that Radiance 6.0a gives, by bsdf.query of pyradiance 1.3.1. Its front, z > 0, is the file's back. Of the pairs
@@ -335,7 +335,7 @@ TEST(Klems, EvaluatesEachPartAsRadianceDoes) {
         Row{BsdfPart::transmission_back, {0.003052, 0.014371, 0.001211, 0.000659, 0.000602}}}) {
     const PatchTable table = parse_klems(bytes, {.part = row.part}).table;
     for (std::size_t k = 0; k < 5; ++k) {
-      const auto& [theta_i, phi_i, theta_o, phi_o] = kAngles[k];
+      const auto& [theta_i, phi_i, theta_o, phi_o] = kPairsOfRadiance[k];
       double f;
       table.eval(spherical_direction(radians(theta_i), radians(phi_i)),
                  spherical_direction(radians(theta_o), radians(phi_o)), {&f, 1});
