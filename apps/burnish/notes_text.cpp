@@ -97,6 +97,7 @@ class Notes {
     if (const std::string symmetrized = take("symmetrized"); symmetrized == "yes")
       add("made", "reciprocal: directions exchanged were averaged before");
     take("objective");  // of use to the solver alone
+    for (const char* said_before : {"part", "band"}) take(said_before);
   }
 
   void bytes() {
