@@ -120,11 +120,13 @@ const FoundBlock& chosen_block(const FileBytes& file, const std::vector<FoundBlo
     }
   const std::size_t chosen = choose_block(file.name, blocks, options);
   note_blocks(blocks, chosen, options, findings);
-  for (const FoundBlock& block : found)
-    if (&block != first[chosen])
-      findings.left_out.push_back(fmt::format("{}{}",
-                                              block.part == blocks[chosen].part ? "a second block of " : "",
-                                              is_transmission(block.part) ? "transmission" : "reflection"));
+  for (const FoundBlock& block : found) {
+    if (&block == first[chosen]) continue;
+    std::string name = block.part == blocks[chosen].part ? "a second block of " : "";
+    name += is_transmission(block.part) ? "transmission" : "reflection";
+    if (std::ranges::find(findings.left_out, name) == findings.left_out.end())
+      findings.left_out.push_back(std::move(name));
+  }
   return *first[chosen];
 }
 

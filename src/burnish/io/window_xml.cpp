@@ -11,7 +11,8 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kMaxListed = 12;  // blocks that are named as left out
+constexpr std::size_t kMaxListed = 12;   // blocks that are named as left out
+constexpr std::size_t kMaxBlocks = 256;  // that can be chosen: no file of a window has as many
 
 std::string_view wavelength_of(pugi::xml_node data) {
   return trimmed(data.child_value("Wavelength"));
@@ -148,7 +149,8 @@ ChosenBlock WindowXml::choose(const OpenOptions& options, Findings& findings) co
       if (present.size() < 160) present += (present.empty() ? "" : ", ") + in_quotes(direction_of(node));
       const auto part = part_in_direction(direction_of(node));
       const std::string band = printable(wavelength_of(data), 40);
-      if (part && !find_band(found, *part, band)) found.push_back({{*part, band}, {node}});
+      if (part && found.size() < kMaxBlocks && !find_band(found, *part, band))
+        found.push_back({{*part, band}, {node}});
     }
   if (found.empty())
     fail("a WavelengthDataBlock 'Reflection Front' or of another part", present.empty() ? "none" : present);
