@@ -25,7 +25,7 @@ struct LaneOf {
 
   LaneOf() = default;
   HWY_INLINE LaneOf(double x)
-      : raw(hn::Set(Tag(), static_cast<float>(x))) {}  // NOLINT: numbers are constants
+      : raw(hn::Set(Tag(), static_cast<hn::TFromD<Tag>>(x))) {}  // NOLINT: numbers are constants
   HWY_INLINE explicit LaneOf(hn::Vec<Tag> v) : raw(v) {}
 
   friend HWY_INLINE LaneOf operator+(LaneOf a, LaneOf b) { return LaneOf(hn::Add(a.raw, b.raw)); }

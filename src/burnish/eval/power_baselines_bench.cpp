@@ -35,6 +35,7 @@ namespace burnish {
 namespace {
 
 using Cosines = std::span<const float>;
+constexpr int kChain = 16;
 
 void std_pow(Cosines c, float e, std::span<float> out) {
   for (std::size_t i = 0; i < c.size(); ++i)
@@ -104,11 +105,48 @@ void table_linear(Cosines c, float e, std::span<float> out) {
   }
 }
 
-}  // namespace
-
-void fma_loop(std::span<const float> cosines, float a, std::span<float> out) {
-  for (std::size_t i = 0; i < cosines.size(); ++i) out[i] = a * cosines[i] + (1 - a);
+#if defined(__x86_64__)
+// The limits of a loop over memory: a copy, and one multiply-add a value.
+void copy_avx2(Cosines c, float, std::span<float> out) {
+  for (std::size_t i = 0; i + 8 <= c.size(); i += 8) _mm256_storeu_ps(&out[i], _mm256_loadu_ps(&c[i]));
 }
+void copy_avx512(Cosines c, float, std::span<float> out) {
+  for (std::size_t i = 0; i + 16 <= c.size(); i += 16) _mm512_storeu_ps(&out[i], _mm512_loadu_ps(&c[i]));
+}
+void fma_avx2(Cosines c, float a, std::span<float> out) {
+  const __m256 k = _mm256_set1_ps(a);
+  for (std::size_t i = 0; i + 8 <= c.size(); i += 8)
+    _mm256_storeu_ps(&out[i], _mm256_fmadd_ps(k, _mm256_loadu_ps(&c[i]), k));
+}
+void fma_avx512(Cosines c, float a, std::span<float> out) {
+  const __m512 k = _mm512_set1_ps(a);
+  for (std::size_t i = 0; i + 16 <= c.size(); i += 16)
+    _mm512_storeu_ps(&out[i], _mm512_fmadd_ps(k, _mm512_loadu_ps(&c[i]), k));
+}
+// Sixteen multiply-adds a value in eight chains: what the arithmetic alone can do.
+void fma_chain_avx2(Cosines c, float a, std::span<float> out) {
+  const __m256 k = _mm256_set1_ps(a);
+  for (std::size_t i = 0; i + 64 <= c.size(); i += 64) {
+    __m256 x[8];
+    for (int j = 0; j < 8; ++j) x[j] = _mm256_loadu_ps(&c[i + 8 * static_cast<std::size_t>(j)]);
+    for (int step = 0; step < kChain; ++step)
+      for (__m256& v : x) v = _mm256_fmadd_ps(k, v, k);
+    for (int j = 0; j < 8; ++j) _mm256_storeu_ps(&out[i + 8 * static_cast<std::size_t>(j)], x[j]);
+  }
+}
+void fma_chain_avx512(Cosines c, float a, std::span<float> out) {
+  const __m512 k = _mm512_set1_ps(a);
+  for (std::size_t i = 0; i + 128 <= c.size(); i += 128) {
+    __m512 x[8];
+    for (int j = 0; j < 8; ++j) x[j] = _mm512_loadu_ps(&c[i + 16 * static_cast<std::size_t>(j)]);
+    for (int step = 0; step < kChain; ++step)
+      for (__m512& v : x) v = _mm512_fmadd_ps(k, v, k);
+    for (int j = 0; j < 8; ++j) _mm512_storeu_ps(&out[i + 16 * static_cast<std::size_t>(j)], x[j]);
+  }
+}
+#endif
+
+}  // namespace
 
 }  // namespace burnish
 #if defined(__x86_64__)
@@ -116,6 +154,17 @@ void fma_loop(std::span<const float> cosines, float a, std::span<float> out) {
 #endif
 
 namespace burnish {
+
+std::vector<PowerBaseline> power_limits() {
+  std::vector<PowerBaseline> all;
+#if defined(__x86_64__)
+  if (!__builtin_cpu_supports("avx512dq") || !__builtin_cpu_supports("avx512vl")) return all;
+  all = {{"copy_avx2", &copy_avx2, -1},         {"fma_avx2", &fma_avx2, -1},
+         {"fma_x16_avx2", &fma_chain_avx2, -1}, {"copy_avx512", &copy_avx512, -1},
+         {"fma_avx512", &fma_avx512, -1},       {"fma_x16_avx512", &fma_chain_avx512, -1}};
+#endif
+  return all;
+}
 
 std::vector<PowerBaseline> power_baselines() {
   std::vector<PowerBaseline> all;

@@ -14,10 +14,11 @@ struct PowerBaseline {
   double allowed_error;  ///< absolute, against the true power
 };
 
-/// The baselines that this processor and build can run. Only "fma_loop" is no power: out = a c + b, one instruction.
+/// The baselines that this processor and build can run.
 std::vector<PowerBaseline> power_baselines();
 
-/// One fused multiply-add a value, the least that a loop over memory can do.
-void fma_loop(std::span<const float> cosines, float a, std::span<float> out);
+/// No powers but the least that a loop over memory can do, for AVX2 and AVX-512: a copy, one multiply-add a value, and
+/// sixteen of them, whose time beside that of one is the arithmetic's alone. Their allowed error is -1.
+std::vector<PowerBaseline> power_limits();
 
 }  // namespace burnish

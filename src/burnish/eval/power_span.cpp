@@ -39,9 +39,25 @@ void constant_kernel(const float* cosines, std::size_t count, const double* coef
                      [=](const Lane(&in)[1]) HWY_ATTR { return Form::value(cosine(in[0]), k); });
 }
 
+// The two that prepare more for a span than coefficients. With 16 registers, more vectors a turn would spill.
+constexpr int kNearExactUnroll = BURNISH_TARGET_IS_AVX3 ? 4 : 2;
+template <>
+void constant_kernel<NearExact>(const float* cosines, std::size_t count, const double* coefficients,
+                                float* out) {
+  const NearExactSpan k(coefficients[0]);
+  for_each_vector<kNearExactUnroll>(
+      {cosines}, count, out, [=](const Lane(&in)[1]) HWY_ATTR { return near_exact_of_span(in[0], k); });
+}
+template <>
+void constant_kernel<Exact>(const float* cosines, std::size_t count, const double* coefficients, float* out) {
+  const ExactSpan k(coefficients[0]);
+  for_each_vector<1>({cosines}, count, out,
+                     [=](const Lane(&in)[1]) HWY_ATTR { return exact_of_span(in[0], k); });
+}
+
 template <class Form>
 void varying_kernel(const float* cosines, const float* exponents, std::size_t count, float* out) {
-  for_each_vector<1>({cosines, exponents}, count, out, [](const Lane(&in)[2]) HWY_ATTR {
+  for_each_vector<2>({cosines, exponents}, count, out, [](const Lane(&in)[2]) HWY_ATTR {
     Lane k[Form::kCoefficients];
     Form::coefficients(Exponent<Lane>{in[1], Lane(1.0)}, k);
     return Form::value(cosine(in[0]), k);

@@ -11,8 +11,9 @@
 namespace burnish {
 
 // Float kernels of the members of PowerMethod, for the widest vectors the processor has. Written once from
-// the same formulas as the definition. Denormals: near_exact and the Gaussians return 2^-125 instead of
-// anything smaller, the others may return denormals.
+// the same formulas as the definition. `exact` is within kExactUlps units of the last place of the power, denormals
+// included. Denormals: near_exact and the Gaussians return 2^-125 instead of anything smaller, the others may return
+// denormals.
 
 /// out[i] = cosines[i]^exponent by `method`. Domain: cosines in [0, 1], exponent in the member's range; out
 /// as long as cosines (it may be the same memory). Beyond the member's own error the result is within

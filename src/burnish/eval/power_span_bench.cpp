@@ -1,13 +1,18 @@
 // Speed beside error of every way to c^e, in one run. Answers are checked against the double power before
-// anything is timed. The printed table takes the least of the repetitions and gives ratios to powf of the
-// same memory level; `--benchmark_filter` and the other flags of Google Benchmark work.
+// anything is timed. The printed table takes the least of the repetitions. It gives how many times as fast as the
+// baseline a way is (BURNISH_BENCH_BASELINE names it, highway_fastpow_false where it is unset), how many multiply-adds
+// over memory it takes, and its time over the limit: a copy, or its own multiply-adds and compares at the processor's
+// full rate. Each ratio is between ways of one target and memory level. `--benchmark_filter` and the other flags of
+// Google Benchmark work.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <memory>
 #include <new>
+#include <optional>
 #include <string>
 
 #include <benchmark/benchmark.h>
@@ -20,6 +25,7 @@
 #include <burnish/math/random.h>
 
 #include "power_baselines_bench.h"
+#include "power_rivals_bench.h"
 
 namespace burnish {
 namespace {
@@ -58,31 +64,59 @@ Floats bench_cosines(std::size_t count) {
 
 using Run = std::function<void(std::span<const float>, std::span<float>)>;
 
-double largest_error(std::span<const float> c, std::span<const float> out) {
-  double worst = 0;
-  for (std::size_t i = 0; i < c.size(); ++i)
-    worst = std::max(worst, std::abs(out[i] - std::pow(static_cast<double>(c[i]), kExponent)));
-  return worst;
-}
+// What is known of a way before it is timed; both errors are -1 where the way is no power.
+struct Way {
+  double error = -1;           // largest |answer - power|
+  double relative_error = -1;  // largest |answer / power - 1| where the power is at least 1/255
+  int operations = 0;          // multiply-adds and compares a value, 0: not counted
+  std::string target;          // "avx2", "avx512" or none
+};
 
-std::map<std::string, double>& errors() {
-  static std::map<std::string, double> all;
+std::map<std::string, Way>& ways() {
+  static std::map<std::string, Way> all;
   return all;
 }
 
-// Registers one way at every memory level, after its answers were found within `allowed`.
-void add(const std::string& name, double allowed, const Run& run) {
+Way measured_way(std::span<const float> c, std::span<const float> out) {
+  Way way{0, 0, 0, {}};
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    const double power = std::pow(static_cast<double>(c[i]), kExponent), error = std::abs(out[i] - power);
+    way.error = std::max(way.error, error);
+    if (power >= 1.0 / 255) way.relative_error = std::max(way.relative_error, error / power);
+  }
+  return way;
+}
+
+// "avx2" or "avx512" where the name ends so.
+std::string target_of(const std::string& name) {
+  for (const char* target : {"avx2", "avx512"})
+    if (name.ends_with(target)) return target;
+  return {};
+}
+
+// Registers one way at every memory level, after its answers were found within `allowed`; `simd` limits our kernels.
+void add(const std::string& name, double allowed, const Run& run, int operations = 0,
+         const std::optional<std::string>& simd = {}) {
   const Floats probe = bench_cosines(4096);
   Floats answer(probe.size());
-  run(probe, answer);
-  const double error = allowed < 0 ? -1 : largest_error(probe, answer);
-  if (error > allowed) {
-    std::fprintf(stderr, "%s: error %g, allowed %g\n", name.c_str(), error, allowed);
+  const auto limit = [=] {
+    return simd ? std::make_unique<SimdTargetLimit>(*simd) : std::unique_ptr<SimdTargetLimit>();
+  };
+  {
+    const auto held = limit();
+    run(probe, answer);
+  }
+  Way way = allowed < 0 ? Way{} : measured_way(probe, answer);
+  if (way.error > allowed && allowed >= 0) {
+    std::fprintf(stderr, "%s: error %g, allowed %g\n", name.c_str(), way.error, allowed);
     std::exit(1);
   }
-  errors()[name] = error;
+  way.operations = operations;
+  way.target = target_of(name);
+  ways()[name] = way;
   for (const Level& level : kLevels)
     benchmark::RegisterBenchmark((name + "/" + level.name).c_str(), [=](benchmark::State& state) {
+      const auto held = limit();
       const Floats c = bench_cosines(level.count);
       Floats out(c.size());
       for (auto _ : state) {
@@ -90,7 +124,7 @@ void add(const std::string& name, double allowed, const Run& run) {
         benchmark::ClobberMemory();
       }
       state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(c.size()));
-      state.counters["max_error"] = error;
+      state.counters["max_error"] = way.error;
     });
 }
 
@@ -120,7 +154,7 @@ void add_shading(const std::string& name, std::optional<PowerMethod> method) {
     std::fprintf(stderr, "%s: error %g, allowed %g\n", name.c_str(), error, allowed);
     std::exit(1);
   }
-  errors()[name] = error;
+  ways()[name] = {error, -1, 0, {}};
   benchmark::RegisterBenchmark((name + "/L1").c_str(), [=](benchmark::State& state) {
     Floats result(kCount);
     for (auto _ : state) {
@@ -143,7 +177,7 @@ class TableReporter : public benchmark::ConsoleReporter {
  public:
   TableReporter() : ConsoleReporter(OO_None) {}
   void ReportRuns(const std::vector<Run>& runs) override {
-    if (!runs.empty() && !errors().count(way_of(runs.front().run_name.function_name))) {
+    if (!runs.empty() && !ways().count(way_of(runs.front().run_name.function_name))) {
       ConsoleReporter::ReportRuns(runs);
       return;
     }
@@ -157,55 +191,95 @@ class TableReporter : public benchmark::ConsoleReporter {
   }
   void Finalize() override {
     if (order_.empty()) return;
-    std::printf("%-28s %10s %10s %12s %12s\n", "way/level", "ns/value", "max error", "x of powf",
-                "/ fma_loop");
-    for (const std::string& name : order_) {
-      const std::string way = way_of(name), level = name.substr(way.size());
-      std::printf("%-28s %10.4f", name.c_str(), least_[name]);
-      const double error = errors()[way];
-      if (error < 0)
-        std::printf(" %10s", "no power");
-      else
-        std::printf(" %10.2g", error);
-      const bool shading = way.rfind("shade_", 0) == 0;
-      const std::string base = shading ? "shade_no_power" : "powf";
-      if (least_.count(base + level)) std::printf(" %12.2f", least_[base + level] / least_[name]);
-      if (!shading && least_.count("fma_loop" + level))
-        std::printf(" %12.2f", least_[name] / least_["fma_loop" + level]);
-      std::printf("\n");
-    }
+    std::printf("%-36s %9s %10s %10s %8s %8s %8s\n", "way/level", "ns/value", "max error", "relative",
+                ("x " + base_).c_str(), "/ fma", "/ limit");
+    for (const std::string& name : order_) print_row(name);
   }
 
  private:
+  // The time of a way of the same target and level, 0 where it was not run.
+  double time_of(const std::string& way, const std::string& target, const std::string& level) const {
+    const auto at = least_.find(way + (target.empty() ? "" : "_" + target) + level);
+    return at == least_.end() ? 0 : at->second;
+  }
+  // No loop of `operations` multiply-adds a value is faster than this: the copy's time or that of the arithmetic.
+  double limit_of(const Way& way, const std::string& level) const {
+    const double per_operation =
+        (time_of("fma_x16", way.target, level) - time_of("fma", way.target, level)) / 15;
+    return std::max(time_of("copy", way.target, level), way.operations * per_operation);
+  }
+  void print_row(const std::string& name) const {
+    const auto print = [](bool known, const char* format, double x) {
+      if (known)
+        std::printf(format, x);
+      else
+        std::printf(" %*s", std::string(format).find("10") == std::string::npos ? 8 : 10, "-");
+    };
+    const std::string way_name = way_of(name), level = name.substr(way_name.size());
+    const Way& way = ways().at(way_name);
+    const double time = least_.at(name);
+    const bool shading = way_name.starts_with("shade_");
+    std::printf("%-36s %9.4f", name.c_str(), time);
+    print(way.error >= 0, " %10.2g", way.error);
+    print(way.relative_error >= 0, " %10.2g", way.relative_error);
+    const double base = shading ? time_of("shade_no_power", "", level) : time_of(base_, way.target, level);
+    print(base > 0, " %8.2f", base / time);
+    const double fma = time_of("fma", way.target, level), limit = way.operations ? limit_of(way, level) : 0;
+    print(fma > 0 && !shading, " %8.2f", time / fma);
+    print(limit > 0, " %8.2f", time / limit);
+    std::printf("\n");
+  }
+
+  const char* wanted_base_ = std::getenv("BURNISH_BENCH_BASELINE");
+  const std::string base_ = wanted_base_ ? wanted_base_ : "highway_fastpow_false";
   std::map<std::string, double> least_;
   std::vector<std::string> order_;
 };
 
+// One of our members for one target, with one exponent for all and, where `exponents` is long enough, one for each.
+void add_member(const PowerInfo& info, const std::string& simd, const std::string& target,
+                std::span<const float> exponents) {
+  const double bound = power_bound(info.method, kExponent);
+  const std::string name(info.name);
+  const int operations = info.cost.multiplies + info.cost.compares;  // adds are fused into multiplies
+  add(
+      name + target, bound + power_span_rounding(info.method, false),
+      [k = power_coefficients(info.method, kExponent)](std::span<const float> c, std::span<float> out) {
+        power_span(k, c, out);
+      },
+      operations, simd);
+  using M = PowerMethod;
+  for (M method : {M::quadratic, M::w8, M::cubic2, M::near_exact, M::exact})
+    if (info.method == method)
+      add(
+          name + "_per_value" + target, bound + power_span_rounding(method, true),
+          [=](std::span<const float> c, std::span<float> out) {
+            power_span(method, c, exponents.first(c.size()), out);
+          },
+          operations, simd);
+}
+
 void add_all() {
-  for (const PowerBaseline& baseline : power_baselines())
-    add(baseline.name, baseline.allowed_error,
-        [run = baseline.run](std::span<const float> c, std::span<float> out) {
-          run(c, static_cast<float>(kExponent), out);
-        });
-  if (!power_baselines().empty())
-    add("fma_loop", -1, [](std::span<const float> c, std::span<float> out) { fma_loop(c, 0.75f, out); });
+  std::vector<PowerBaseline> others = power_limits();
+  if (!others.empty())  // else this processor lacks what they need
+    for (const auto& more : {power_baselines(), highway_rivals()})
+      others.insert(others.end(), more.begin(), more.end());
+  for (const PowerBaseline& other : others)
+    add(other.name, other.allowed_error, [run = other.run](std::span<const float> c, std::span<float> out) {
+      run(c, static_cast<float>(kExponent), out);
+    });
+  static const Floats exponents(kLevels[2].count, static_cast<float>(kExponent));
   for (const PowerInfo& info : power_methods()) {
     if (info.method == PowerMethod::quadratic_raw) continue;  // as fast as quadratic, not a power
-    const double allowed = power_bound(info.method, kExponent) + power_span_rounding(info.method, false);
-    const std::string name = info.method == PowerMethod::exact ? "highway_exp_log" : std::string(info.name);
-    add(name, allowed,
-        [k = power_coefficients(info.method, kExponent)](std::span<const float> c, std::span<float> out) {
-          power_span(k, c, out);
-        });
+    bool any = false;
+    for (const std::string& simd : simd_targets()) {
+      const std::string target = simd == "AVX2" ? "_avx2" : simd == "AVX3" ? "_avx512" : "";
+      if (target.empty()) continue;
+      any = true;
+      add_member(info, simd, target, exponents);
+    }
+    if (!any) add_member(info, simd_targets().front(), "", exponents);
   }
-  static const Floats exponents(kLevels[2].count, static_cast<float>(kExponent));
-  for (PowerMethod method :
-       {PowerMethod::quadratic, PowerMethod::w8, PowerMethod::cubic2, PowerMethod::near_exact})
-    add(std::string(power_info(method).name) + "_per_value",
-        power_bound(method, kExponent) + power_span_rounding(method, true),
-        [method](std::span<const float> c, std::span<float> out) {
-          power_span(method, c, std::span(exponents).first(c.size()), out);
-        });
   add_shading("shade_no_power", {});
   for (PowerMethod method : {PowerMethod::quadratic, PowerMethod::w8, PowerMethod::cubic2,
                              PowerMethod::cubic4, PowerMethod::near_exact, PowerMethod::exact})
@@ -224,12 +298,14 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&count, arguments.data());
   const char* flush = std::getenv("BURNISH_BENCH_FLUSH_DENORMALS");
   const char* target = std::getenv("BURNISH_BENCH_TARGET");
-  const burnish::SimdTargetLimit limit(target ? target : burnish::simd_targets().front());
+  std::optional<burnish::SimdTargetLimit> limit;
+  if (target) limit.emplace(target);
 #if defined(__x86_64__)
   if (flush) _mm_setcsr(_mm_getcsr() | 0x8040);  // flush to zero, denormals are zero
 #endif
-  std::printf("exponent %g, denormals %s, target %s\n", burnish::kExponent, flush ? "flushed" : "kept (IEEE)",
-              burnish::simd_targets().front().c_str());
+  std::printf("exponent %g, denormals %s, best target %s, Highway's own powers %s, SLEEF %s\n",
+              burnish::kExponent, flush ? "flushed" : "kept (IEEE)", burnish::simd_targets().front().c_str(),
+              burnish::highway_rival_version().c_str(), BURNISH_SLEEF_VERSION);
   burnish::add_all();
   burnish::TableReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);

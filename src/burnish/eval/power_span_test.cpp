@@ -35,7 +35,8 @@ TEST_P(PowerSpan, EqualsTheDefinitionOnEveryTarget) {
   for (const std::string& target : simd_targets()) {
     const SimdTargetLimit limit(target);
     Pcg32 random(1);
-    for (double e : {GetParam().min_exponent(), 4.0, 10.0, 33.3, 250.0, 1024.0}) {
+    for (double from_one : {1.0, 4.0, 10.0, 33.3, 250.0, 1024.0}) {
+      const double e = std::max(from_one, GetParam().min_exponent());
       const std::vector<float> c = test_cosines(e, 1003, random);
       std::vector<float> out(c.size());
       power_span(method, c, e, out);
@@ -86,6 +87,35 @@ TEST_P(PowerSpan, KeepsTheProvedBoundAgainstTheTruePower) {
 INSTANTIATE_TEST_SUITE_P(Members, PowerSpan,
                          testing::ValuesIn(power_methods().begin(), power_methods().end()),
                          [](const auto& member) { return std::string(member.param.name); });
+
+// Distance from c^e in units of the last place that a float of its size has, down to the least denormal.
+double ulps_off(float found, float c, double e) {
+  const long double power = std::pow(static_cast<long double>(c), static_cast<long double>(e));
+  int exponent = 0;
+  std::frexp(power, &exponent);
+  return static_cast<double>(std::abs(found - power)) / std::ldexp(1.0, std::max(exponent - 24, -149));
+}
+
+TEST(ExactPowerSpan, IsWithinItsUlpsOnEveryTarget) {
+  Pcg32 random(6);
+  for (const std::string& target : simd_targets()) {
+    const SimdTargetLimit limit(target);
+    for (double e : {1.0, 1.37, 2.0, 16.0, 50.0, 333.3, 1024.0}) {
+      std::vector<float> c = test_cosines(e, 40000, random);
+      for (std::size_t i = 100; i < 400; ++i)
+        c[i] = static_cast<float>(std::exp2(-149 * random.uniform() / e));
+      for (std::size_t i = 400; i < 700; ++i) c[i] = static_cast<float>(i) * 0x1p-149f;
+      std::vector<float> out(c.size());
+      power_span(PowerMethod::exact, c, e, out);
+      for (std::size_t i = 0; i < c.size(); ++i)
+        ASSERT_LE(ulps_off(out[i], c[i], e), kExactUlps) << target << " e " << e << " c " << c[i];
+      const auto float_e = static_cast<float>(e);
+      power_span(PowerMethod::exact, c, std::vector<float>(c.size(), float_e), out);
+      for (std::size_t i = 0; i < c.size(); ++i)
+        ASSERT_LE(ulps_off(out[i], c[i], float_e), kExactUlps) << target << " e " << e << " c " << c[i];
+    }
+  }
+}
 
 TEST(PowerSpans, AnyLengthAndPlaceGivesTheSameValues) {
   Pcg32 random(4);
@@ -160,7 +190,8 @@ TEST_P(PowerSpan, ShadesAHighlightOfAnyWeight) {
   std::vector<float> out(normals.x.size());
   for (const std::string& target : simd_targets()) {
     const SimdTargetLimit limit(target);
-    for (double e : {std::max(GetParam().min_exponent(), 1.5), 5.3, 80.5, 1024.0})
+    for (double e :
+         {std::max(GetParam().min_exponent(), 1.5), std::max(GetParam().min_exponent(), 5.3), 80.5, 1024.0})
       for (float weight : {0.0f, 0.01f, 0.7f, 40.0f}) {
         material.specular = weight;
         material.power = power_coefficients(GetParam().method, e);

@@ -125,9 +125,9 @@ Language c() {
   l.math = "#include <math.h>\n\n";
   l.exponent_of =
       "#include <math.h>\n#include <string.h>\n\n"
-      "// n where x = m 2^n, m in [2/3, 4/3)\n"
+      "// n where x = m 2^n, m in [0.645, 1.29)\n"
       "static inline float power_exponent_of(float x) {\n"
-      "  int bits;\n  memcpy(&bits, &x, sizeof bits);\n  return (float)((bits - 0x3f2aaaab) >> 23);\n}\n\n";
+      "  int bits;\n  memcpy(&bits, &x, sizeof bits);\n  return (float)((bits - 0x3f251eb8) >> 23);\n}\n\n";
   l.calls = kCMath;
   return l;
 }
@@ -137,9 +137,9 @@ Language cuda() {
   Language l = c_like("cuda", "f");
   l.definition = "__device__ inline {0} {1}({2}) {{\n{3}}}\n";
   l.exponent_of =
-      "// n where x = m 2^n, m in [2/3, 4/3)\n"
+      "// n where x = m 2^n, m in [0.645, 1.29)\n"
       "__device__ inline float power_exponent_of(float x) {\n"
-      "  return (float)((__float_as_int(x) - 0x3f2aaaab) >> 23);\n}\n\n";
+      "  return (float)((__float_as_int(x) - 0x3f251eb8) >> 23);\n}\n\n";
   l.calls = kCMath;
   return l;
 }
@@ -171,9 +171,9 @@ Language glsl() {
   l.local = "  {0} {1} = {2};\n";
   l.definition = "{0} {1}({2}) {{\n{3}}}\n";
   l.exponent_of =
-      "// n where x = m 2^n, m in [2/3, 4/3)\n"
+      "// n where x = m 2^n, m in [0.645, 1.29)\n"
       "float power_exponent_of(float x) {\n"
-      "  return float((floatBitsToInt(x) - 0x3f2aaaab) >> 23);\n}\n\n";
+      "  return float((floatBitsToInt(x) - 0x3f251eb8) >> 23);\n}\n\n";
   l.calls = kShaderMath;
   l.texel = "texelFetch({0}, ivec2({1}, {2}), 0).{3}";
   l.texel_3d = "texelFetch({0}, ivec3({1}, {2}, {3}), 0).{4}";
@@ -216,8 +216,8 @@ Language hlsl() {
   l.half_vector = l.half_constructor = l.half_from_vector = "min16float3";
   l.definition = "{0} {1}({2}) {{\n{3}}}\n";
   l.exponent_of =
-      "// n where x = m 2^n, m in [2/3, 4/3)\n"
-      "float power_exponent_of(float x) {\n  return float((asint(x) - 0x3f2aaaab) >> 23);\n}\n\n";
+      "// n where x = m 2^n, m in [0.645, 1.29)\n"
+      "float power_exponent_of(float x) {\n  return float((asint(x) - 0x3f251eb8) >> 23);\n}\n\n";
   l.calls = with(kShaderMath, {{Op::scale_by_two, {"ldexp({0}, {1})"}}});
   l.texel = "{0}.Load(int3({1}, {2}, 0)).{3}";
   l.texel_3d = "{0}.Load(int4({1}, {2}, {3}, 0)).{4}";
@@ -247,9 +247,9 @@ Language msl() {
   l.half_vector = l.half_constructor = l.half_from_vector = "half3";
   l.half_suffix = "h";
   l.exponent_of =
-      "// n where x = m 2^n, m in [2/3, 4/3)\n"
+      "// n where x = m 2^n, m in [0.645, 1.29)\n"
       "inline float power_exponent_of(float x) {\n"
-      "  return float((as_type<int>(x) - 0x3f2aaaab) >> 23);\n}\n\n";
+      "  return float((as_type<int>(x) - 0x3f251eb8) >> 23);\n}\n\n";
   l.calls = kShaderMath;
   l.texel = "tables.{0}.read(uint2({1}, {2})).{3}";
   l.texel_3d = "tables.{0}.read(uint3({1}, {2}, {3})).{4}";
@@ -274,8 +274,8 @@ Language rust() {
   l.parameter = "{1}: {0}";
   l.definition = "pub fn {1}({2}) -> {0} {{\n{3}}}\n";
   l.exponent_of =
-      "/// n where x = m 2^n, m in [2/3, 4/3)\n"
-      "fn power_exponent_of(x: f32) -> f32 {\n    ((x.to_bits() as i32 - 0x3f2aaaab) >> 23) as f32\n}\n\n";
+      "/// n where x = m 2^n, m in [0.645, 1.29)\n"
+      "fn power_exponent_of(x: f32) -> f32 {\n    ((x.to_bits() as i32 - 0x3f251eb8) >> 23) as f32\n}\n\n";
   l.calls = kRustMath;
   return l;
 }
@@ -294,8 +294,8 @@ Language wgsl() {
   l.parameter = "{1}: {0}";
   l.definition = "fn {1}({2}) -> {0} {{\n{3}}}\n";
   l.exponent_of =
-      "// n where x = m 2^n, m in [2/3, 4/3)\n"
-      "fn power_exponent_of(x: f32) -> f32 {\n  return f32((bitcast<i32>(x) - 0x3f2aaaab) >> 23u);\n}\n\n";
+      "// n where x = m 2^n, m in [0.645, 1.29)\n"
+      "fn power_exponent_of(x: f32) -> f32 {\n  return f32((bitcast<i32>(x) - 0x3f251eb8) >> 23u);\n}\n\n";
   l.calls = with(kShaderMath, {{Op::if_less, {"select({3}, {2}, {0} < {1})"}},
                                {Op::scale_by_two, {"ldexp({0}, i32({1}))"}},
                                {Op::to_integer, {"i32({0})"}},

@@ -290,13 +290,13 @@ Dual log2_ratio_exact(const Dual& t) {
 // With L the polynomial logarithm and P the polynomial exponential of NearExact, x = e |ln c| and
 // y = e log2 c:
 //   |L(c) - log2 c| <= r |log2 c|  gives  |2^(e L) - c^e| <= r max x exp(-x (1 - r)) <= r / exp(1) (1 + 2 r),
-//   |P(f) - 2^f| <= p for f <= 0 and 2 p for f > 0, where the power of two is at most 1/2, adds p,
+//   |P(f) - 2^f| <= 2 p for f in [0, 1), where the power of two is at most 1/2 unless f = 0 and P is exact, adds p,
 //   and the smallest power of two returned adds 2^-125.
 double near_exact_bound(double r, double p) {
   return interval_detail::up(r / std::numbers::e * (1 + 3 * r) + p + 0x1p-124, 16);
 }
 
-constexpr double kLogError = 5.3e-6, kExpError = 7e-8;
+constexpr double kLogError = 4.8e-6, kExpError = 7.9e-8;
 
 bool prove_near_exact_parts() {
   // n = 0, t <= 0: relative to log2(1 + t)
@@ -304,19 +304,75 @@ bool prove_near_exact_parts() {
     const Dual ratio = log2_ratio_exact(t);
     return (NearExact::log2_ratio(t) - ratio) / ratio;
   };
-  const bool centre = prove_small_1d(ratio_error, -1.0 / 3, 0, kLogError);
+  constexpr double kLeast = 0.645 - 1e-6, kMost = 1.29 + 1e-6;  // m, with the split's rounding
+  const bool centre = prove_small_1d(ratio_error, kLeast - 1, 0, kLogError);
   // n <= -1: |log2 c| >= 1 - log2(1 + t)
   const auto error = [&](const Dual& t) {
     const Dual log2_m = t * log2_ratio_exact(t);
     return (t * NearExact::log2_ratio(t) - log2_m) / (Dual(1.0) - log2_m);
   };
-  const bool rest = prove_small_1d(error, -1.0 / 3, 1.0 / 3, kLogError);
-  const auto exp_error = [](const Dual& f) { return NearExact::exp2_near_zero(f) - exp2(f); };
-  return centre && rest && prove_small_1d(exp_error, -0.5, 0, kExpError) &&
-         prove_small_1d(exp_error, 0, 0.5, 2 * kExpError);
+  const bool rest = prove_small_1d(error, kLeast - 1, kMost - 1, kLogError);
+  const auto of_fraction = [](const Dual& f) { return NearExact::exp2_of_fraction(f) - exp2(f); };
+  const auto of_mantissa = [](const Dual& f) { return NearExact::exp2_of_mantissa(f + Dual(1.0)) - exp2(f); };
+  return centre && rest && prove_small_1d(of_fraction, 0, 1, 2 * kExpError) &&
+         prove_small_1d(of_mantissa, 0, 1, 2 * kExpError);
+}
+
+// The polynomial as the kernel of the exact power computes it, but for fused roundings.
+template <std::size_t count>
+double horner(double x, const double (&coefficients)[count]) {
+  double sum = coefficients[count - 1];
+  for (std::size_t i = count - 1; i-- > 0;) sum = sum * x + coefficients[i];
+  return sum;
+}
+
+// Largest |L(c) - log2 c| / |log2 c| over all floats c in (0, 1), L the kernel's: each has one of 2^23 mantissas m in
+// [2/3, 4/3). A power of two below 1 adds to log2 m < 0.42 a whole number, which is exact: the first counts most.
+double exact_log_error() {
+  constexpr int kMantissas = 1 << 23;
+  constexpr double kStep = 0x1p-23;
+  double worst = 0;
+  for (int i = 0; i < kMantissas; ++i) {
+    double m = 1 + i * kStep;
+    if (m >= 4.0 / 3) m /= 2;
+    const double t = m - 1;
+    if (t == 0) continue;  // L = 0 there
+    const long double log2_m = std::log1p(static_cast<long double>(t)) / std::numbers::ln2_v<long double>;
+    const long double size = t < 0 ? -log2_m : 1 - log2_m;
+    const double error = static_cast<double>(std::abs(t * horner(t, Exact::kLog2) - log2_m) / size);
+    worst = std::max(worst, error);
+  }
+  return worst;
+}
+
+// Largest |P(f) / 2^f - 1| for |f| <= 1/2: on a grid, and beside it by the slope (P' - ln 2 P) / 2^f, whose
+// coefficients' magnitudes bound it.
+double exact_exp_error() {
+  constexpr int kPoints = 1 << 14;
+  double worst = 0;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double f = static_cast<double>(i) / kPoints - 0.5;
+    const long double power = std::exp2(static_cast<long double>(f));
+    worst = std::max(worst, static_cast<double>(std::abs(horner(f, Exact::kExp2) / power - 1)));
+  }
+  constexpr int kDegree = std::size(Exact::kExp2) - 1;
+  double slope = 0, scale = std::numbers::sqrt2;
+  for (int i = 0; i <= kDegree; ++i, scale *= 0.5) {
+    const double derivative = i < kDegree ? (i + 1) * Exact::kExp2[i + 1] : 0;
+    slope += scale * std::abs(derivative - ln2 * Exact::kExp2[i]);
+  }
+  return worst + slope / (2 * kPoints);
 }
 
 }  // namespace
+
+double proved_exact_ulps() {
+  constexpr double kLeastOctave = 150;    // below 2^-150 a float is 0
+  constexpr double kRoundings = 0x1p-49;  // of some twenty operations in doubles
+  const double log_error = kLeastOctave * ln2 * (exact_log_error() + kRoundings);
+  // 2^-24 of a float is half a unit of its last place or less; the one rounding to a float adds a half
+  return 0.5 + std::ldexp(log_error * (1 + log_error) + exact_exp_error() + kRoundings, 24);
+}
 
 BoundProof prove_power_bound(PowerMethod method, const PowerBound& range, std::size_t max_boxes) {
   if (method == PowerMethod::near_exact)

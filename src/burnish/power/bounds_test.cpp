@@ -89,6 +89,12 @@ std::vector<PowerInfo> approximations() {
 INSTANTIATE_TEST_SUITE_P(Power, ProvedMember, testing::ValuesIn(approximations()),
                          [](const auto& member) { return std::string(member.param.name); });
 
+TEST(ExactPower, IsProvedWithinAnUlpForEveryFloatCosine) {
+  const double ulps = proved_exact_ulps();
+  EXPECT_LT(ulps, kExactUlps);
+  EXPECT_GT(ulps, 0.5);
+}
+
 TEST(QuadraticCoefficient, IsProvedAffineWithoutATable) {
   EXPECT_TRUE(prove_affine_coefficient(2, 1024, 0.15).proved);
   EXPECT_FALSE(prove_affine_coefficient(2, 1024, 0.14).proved);

@@ -32,11 +32,11 @@ SplitExpr split(const Expr& c) {
   const Expr n(Op::exponent_of, {c});
   return {n, Expr(Op::scale_by_two, {c, Expr(0.0) - n})};
 }
-struct WholeAndRest {
-  Expr whole, rest;
+struct WholeAndFraction {
+  Expr whole, fraction;
 };
-WholeAndRest round_to_whole(const Expr& y) {
-  const Expr whole(Op::floor, {y + 0.5});
+WholeAndFraction floor_and_fraction(const Expr& y) {
+  const Expr whole(Op::floor, {y});
   return {whole, y - whole};
 }
 Expr scale_by_power_of_two(const Expr& x, const Expr& n) {

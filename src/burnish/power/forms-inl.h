@@ -9,7 +9,7 @@
 //   if_less(a, b, x, y) = a < b ? x : y                              short_exp2: 2^x within 7e-5 or better
 //   power_at_inflection(V)          see Quadratic
 // and for some members log_cosine and its inverse exp_of_log (to any one base), squared_angle, cos_of_root,
-// split, round_to_whole and scale_by_power_of_two as noted there.
+// split, floor_and_fraction and scale_by_power_of_two as noted there.
 //
 // Everything is homogeneous. With u = 1 - c, a member's value depends on c, u and coefficients k; coefficient
 // k of u^i is a polynomial of degree i in (e, one), where one = 1. So replacing (e, one, u) by (1, 1/e, e u)
@@ -32,6 +32,14 @@ T polynomial(T x, double b, B... higher) {
     return T(b);
   else
     return mul_add(polynomial(x, higher...), x, T(b));
+}
+
+/// The polynomial of these coefficients, the constant first.
+template <class T, std::size_t count>
+T polynomial(T x, const double (&coefficients)[count]) {
+  T sum(coefficients[count - 1]);
+  for (std::size_t i = count - 1; i-- > 0;) sum = mul_add(sum, x, T(coefficients[i]));
+  return sum;
 }
 
 template <class T>
@@ -62,8 +70,25 @@ struct Exact {
   }
   template <class P, class T>
   static T value(const P& p, const T* k) {
-    return exp_of_log(k[0] * log_cosine(p));
+    if constexpr (requires { exact_kernel<Exact>(p.c, k[0]); })
+      return exact_kernel<Exact>(p.c, k[0]);
+    else
+      return exp_of_log(k[0] * log_cosine(p));
   }
+  // The vectors' kernel, in doubles: log2(1 + t) for t in [-1/3, 1/3] is t times the polynomial of kLog2, within
+  // 1.9e-11 of it; 2^f for f in [-1/2, 1/2] is that of kExp2, within 2e-9 of it, exact at 0.
+  static constexpr double kLog2[] = {1.4426950408889634,   -0.7213475195890743,  0.4808983461624031,
+                                     -0.36067397503253135, 0.2885392092154406,   -0.24043384189982597,
+                                     0.20608494395275082,  -0.18080231601297725, 0.1607349572696111,
+                                     -0.1374949345626878,  0.124816639367347,    -0.16599428813932715,
+                                     0.15377125307658862};
+  static constexpr double kExp2[] = {1.0,
+                                     0.693147202855053,
+                                     0.24022647913598957,
+                                     0.055503324710729184,
+                                     0.009618437360671965,
+                                     0.0013398874441323428,
+                                     0.00015353361213338683};
 };
 
 struct Schlick {
@@ -305,24 +330,31 @@ struct GaussianSecondOrder {
   }
 };
 
-/// exp2(e log2 c) with both functions as polynomials: c = m 2^n, m in [2/3, 4/3).
+/// exp2(e log2 c) with both functions as polynomials: c = m 2^n, m in [0.645, 1.29).
 struct NearExact {
   static constexpr int kCoefficients = 1;
   template <class T>
   static void coefficients(const Exponent<T>& x, T* k) {
     k[0] = x.e;
   }
-  /// log2(1 + t) for t in [-1/3, 1/3], as t times this. Weighted for least error of c^e.
+  /// log2(1 + t) for t in [-0.355, 0.29] is t times the polynomial of these. Weighted for least error of c^e.
+  static constexpr double kLog2[] = {1.44268836,   -0.721631297, 0.480207006,
+                                     -0.348687457, 0.315810036,  -0.362501085};
   template <class T>
   static T log2_ratio(T t) {
-    return polynomial(t, 1.44269884, -0.721511126, 0.47929588, -0.355069339, 0.326994777, -0.299638063);
+    return polynomial(t, kLog2);
   }
-  /// 2^f for f in [-1/2, 1/2], exact at 0.
+  /// 2^f for f in [0, 1], exact at both ends, in floats too.
   template <class T>
-  static T exp2_near_zero(T f) {
-    return polynomial(f, 1.0, 0.693146825, 0.240222365, 0.0555089153, 0.00967176259, 0.00132257072);
+  static T exp2_of_fraction(T f) {
+    return polynomial(f, 1.0, 0.693152964, 0.240147129, 0.0558552928, 0.00894775242, 0.00189684913);
   }
-  /// 2^f to 7e-5, exact at 0: enough for the Gaussians.
+  /// 2^(m - 1) for m in [1, 2], exact at both ends, in floats too: for vectors that have m and not its fraction.
+  template <class T>
+  static T exp2_of_mantissa(T m) {
+    return polynomial(m, 0.498189688, 0.354118109, 0.107298918, 0.0390330143, -0.000536574575, 0.00189685996);
+  }
+  /// 2^f to 7e-5 for f in [-1/2, 1/2], exact at 0: enough for the Gaussians.
   template <class T>
   static T exp2_near_zero_short(T f) {
     return polynomial(f, 1.0, 0.693346858, 0.242223814, 0.0547617041);
@@ -331,11 +363,15 @@ struct NearExact {
 
   template <class P, class T>
   static T value(const P& p, const T* k) {
-    const auto [n, m] = split(p.c);
-    const T t = m - T(1.0);
-    const T y = max(k[0] * mul_add(log2_ratio(t), t, n), T(kMinPower));
-    const auto [whole, f] = round_to_whole(y);
-    return scale_by_power_of_two(exp2_near_zero(f), whole);
+    if constexpr (requires { near_exact_kernel<NearExact>(p.c, k[0]); }) {
+      return near_exact_kernel<NearExact>(p.c, k[0]);  // vectors split numbers in ways of their own
+    } else {
+      const auto [n, m] = split(p.c);
+      const T t = m - T(1.0);
+      const T y = max(k[0] * mul_add(log2_ratio(t), t, n), T(kMinPower));
+      const auto [whole, f] = floor_and_fraction(y);
+      return scale_by_power_of_two(exp2_of_fraction(f), whole);
+    }
   }
 };
 

@@ -44,22 +44,22 @@ double cos_of_root(double q) {
 struct SplitNumber {
   double exponent, mantissa;
 };
-// c = mantissa 2^exponent, mantissa in [2/3, 4/3).
+// c = mantissa 2^exponent, mantissa in [0.645, 1.29).
 SplitNumber split(double c) {
   if (c <= 0) return {-127, 1};  // as the float bits of 0 read
   int n = 0;
   double m = std::frexp(c, &n);
-  if (m < 2.0 / 3) {
+  if (m < 0.645) {
     m *= 2;
     --n;
   }
   return {static_cast<double>(n), m};
 }
-struct WholeAndRest {
-  double whole, rest;
+struct WholeAndFraction {
+  double whole, fraction;
 };
-WholeAndRest round_to_whole(double y) {
-  const double whole = std::nearbyint(y);
+WholeAndFraction floor_and_fraction(double y) {
+  const double whole = std::floor(y);
   return {whole, y - whole};
 }
 double scale_by_power_of_two(double x, double n) {
@@ -117,7 +117,7 @@ std::vector<PowerInfo> make_infos() {
       {M::rational4, "rational4", "(c / (c + k0 u + k1 u^2))^4", "burnish", 4, {{4, kMax, 0.00247}}, {}},
       {M::gaussian, "gaussian", "2^(-e u / ln 2)", "Wang2009", 1, {{1, kMax, 0.3679}, {5, kMax, 0.0582}, {50, kMax, 0.00548}}, {}},
       {M::gaussian2, "gaussian2", "2^(-e (u + u^2/2) / ln 2)", "burnish", 1, {{1, kMax, 0.2232}, {5, kMax, 0.0134}, {50, kMax, 0.00018}}, {}},
-      {M::near_exact, "near_exact", "2^(e log2 c), both by polynomials", "burnish", 1, {{1, kMax, 2.1e-6}}, {}},
+      {M::near_exact, "near_exact", "2^(e log2 c), both by polynomials", "burnish", 1, {{1, kMax, 1.85e-6}}, {}},
   };
   // clang-format on
   for (PowerInfo& info : infos) info.cost = count_operations(info.method);

@@ -69,6 +69,9 @@ struct PowerInfo {
 };
 
 inline constexpr double kMaxExponent = 1024;
+/// The float kernels of PowerMethod::exact are within this of the power, in units of the last place of a float.
+/// proved_exact_ulps() proves it.
+inline constexpr double kExactUlps = 0.6;
 
 /// All members, in the order of PowerMethod.
 std::span<const PowerInfo> power_methods();
