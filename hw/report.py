@@ -43,13 +43,15 @@ for unit in figures:
     depths[unit] = module.split(" clocks.")[0].split()[-1]
 
 blocks = table(
-    ["block", "clocks", "HX8K LC / EBR / MHz", "UP5K MHz", "Xilinx 7 LUT / FF / BRAM / DSP", "gates / FF", "error, LSB of 8 bits"],
+    ["block", "clocks", "HX8K LC / EBR / MHz", "UP5K MHz", "Xilinx 7 LUT / FF / BRAM / DSP", "gates / FF",
+     "sky130hd, um2", "gf180 7t, um2", "error, LSB of 8 bits"],
     [[f"`{unit}`", depths[unit], f"{f['lc']} / {f['ebr']} / {f['hx_mhz']}", f["up_mhz"], f"{f['luts']} / {f['x_ff']} / {f['x_bram']} / {f['x_dsp']}",
-      f"{f['gates']} / {f['ff']}", f"{errors[unit]['max_error_lsb']:.2f}" + ("*" if unit in EXACT[3:] else "")]
+      f"{f['gates']} / {f['ff']}", f["sky130"], f["gf180"], f"{errors[unit]['max_error_lsb']:.2f}" + ("*" if unit in EXACT[3:] else "")]
      for unit, f in figures.items()])
 blinn = table(
-    ["from vectors", "Xilinx 7 LUT / FF / BRAM / DSP", "gates / FF"],
-    [[f"`{name}`", f"{f['luts']} / {f['x_ff']} / {f['x_bram']} / {f['x_dsp']}", f"{f['gates']} / {f['ff']}"] for name, f in vectors.items()])
+    ["from vectors", "Xilinx 7 LUT / FF / BRAM / DSP", "gates / FF", "sky130hd, um2", "gf180 7t, um2"],
+    [[f"`{name}`", f"{f['luts']} / {f['x_ff']} / {f['x_bram']} / {f['x_dsp']}", f"{f['gates']} / {f['ff']}", f["sky130"],
+      f["gf180"]] for name, f in vectors.items()])
 widths = table(
     ["unit", "vectors", "largest error, LSB", "correctly rounded", "answers that fall as c rises", "tables, words x bits"],
     [[f"`{unit}`", f"{e['vectors']:,}", f"{e['max_error_lsb']:.3f}", f"{100 * e['correctly_rounded']:.2f} %", e["falls"],
