@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <span>
@@ -15,9 +16,11 @@ namespace {
 
 constexpr std::size_t kUsual = 24, kFewest = 2 * kUsual;
 constexpr double kDeviations = 5;
-constexpr std::size_t kNearerHorizon = kUsual / 4, kNearerMirror = kUsual / 8;  // at least, of those around
-constexpr double kMedianSquare = 0.455;  // median square of a normal variable of deviation 1
-constexpr double kLargestShare = 0.1;    // of the nodes
+constexpr double kLeastFactor = 2;  // between an outlier and what its neighbours predict
+constexpr std::size_t kNearerHorizon = kUsual / 4, kNearerMirror = kUsual / 8,
+                      kNearerNormal = kUsual / 8;  // at least
+constexpr double kMedianSquare = 0.455;            // median square of a normal variable of deviation 1
+constexpr double kLargestShare = 0.1;              // of the nodes
 constexpr int kRounds = 8;
 constexpr std::size_t kNodesTogether = 256;  // a thread at a time
 
@@ -25,12 +28,16 @@ constexpr std::size_t kNodesTogether = 256;  // a thread at a time
 class Surprises {
  public:
   explicit Surprises(const MeasuredNodes& nodes)
-      : others_(nodes.samples, nodes.samples.isotropic), squares_(others_.size()), out_(others_.size()) {
+      : others_(nodes.samples, nodes.samples.isotropic),
+        squares_(others_.size()),
+        distances_(others_.size()),
+        out_(others_.size()) {
     for (std::size_t i = 0; i < others_.size(); ++i) {
       const DirectionPair& pair = nodes.samples.pairs[others_.number(i)];
       const std::span<const double> f = nodes.samples.at(others_.number(i));
       cosine_of_h_.push_back(half_vector(pair.wi, pair.wo).z);
       least_cosine_.push_back(std::min(pair.wi.z, pair.wo.z));
+      largest_cosine_.push_back(std::max(pair.wi.z, pair.wo.z));
       sum_.push_back(std::accumulate(f.begin(), f.end(), 0.0));
       stale_.push_back(i);
     }
@@ -70,16 +77,21 @@ class Surprises {
     std::ranges::sort(stale_);
     stale_.erase(std::unique(stale_.begin(), stale_.end()), stale_.end());
     for_each_chunk(stale_.size(), kNodesTogether, [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) squares_[stale_[k]] = others_.miss(stale_[k], out_).square;
+      for (std::size_t k = begin; k < end; ++k) {
+        const LeaveOneOut::Miss miss = others_.miss(stale_[k], out_);
+        squares_[stale_[k]] = miss.square;
+        distances_[stale_[k]] = miss.distance;
+      }
     });
     stale_.clear();
   }
 
   bool contradicts(std::size_t i) const {
-    // An outlier is more than five deviations off, and five times more than is usual around it: the median of the
-    // neighbours' squares over that of a normal variable is their usual variance.
+    // An outlier is more than five deviations and a factor of two off, and five times more than is usual around it: the
+    // median of the neighbours' squares over that of a normal variable is their usual variance. Real sources have narrow
+    // bumps that are smaller.
     constexpr double kMost = kDeviations * kDeviations;
-    if (!(squares_[i] > kMost)) return false;
+    if (!(squares_[i] > kMost && distances_[i] > std::log(kLeastFactor))) return false;
     const std::vector<KdTree::Neighbour> near = others_.nearest(i, kUsual, out_);
     if (!is_surrounded(i, near) || !is_extreme(i, near)) return false;
     std::vector<double> around;
@@ -88,15 +100,16 @@ class Surprises {
     return squares_[i] > kMost * around[around.size() / 2] / kMedianSquare;
   }
 
-  /// Returns true if the others stand on all sides. A rise towards the horizon or the mirror direction, where measurements
-  /// end, differs from all that was measured before it.
+  /// Returns true if the others stand on all sides. A rise towards the horizon, the mirror direction or the normal, where
+  /// measurements end, differs from all that was measured before it.
   bool is_surrounded(std::size_t i, std::span<const KdTree::Neighbour> near) const {
     const auto count = [&](const auto& is_beyond) {
       return static_cast<std::size_t>(
           std::ranges::count_if(near, [&](const KdTree::Neighbour& one) { return is_beyond(one.place); }));
     };
     return count([&](std::size_t k) { return least_cosine_[k] < least_cosine_[i]; }) >= kNearerHorizon &&
-           count([&](std::size_t k) { return cosine_of_h_[k] > cosine_of_h_[i]; }) >= kNearerMirror;
+           count([&](std::size_t k) { return cosine_of_h_[k] > cosine_of_h_[i]; }) >= kNearerMirror &&
+           count([&](std::size_t k) { return largest_cosine_[k] > largest_cosine_[i]; }) >= kNearerNormal;
   }
 
   /// Returns true if it is larger, or smaller, than all the others: on the slope of a highlight a value is neither.
@@ -115,8 +128,8 @@ class Surprises {
 
   LeaveOneOut others_;
   // One value a node, in the order of others_; sum_ adds the channels.
-  std::vector<double> cosine_of_h_, least_cosine_, sum_;
-  std::vector<double> squares_;
+  std::vector<double> cosine_of_h_, least_cosine_, largest_cosine_, sum_;
+  std::vector<double> squares_, distances_;
   std::vector<std::uint8_t> out_;   // 1: left out
   std::vector<std::size_t> stale_;  // nodes whose squares are out of date
 };

@@ -55,6 +55,19 @@ TEST(Outliers, AreFoundAndNothingElse) {
     }
 }
 
+TEST(Outliers, AreOffByAFactorOfTwo) {
+  // Every 60th sample is raised by a factor that is far more than the noise.
+  const auto found = [](double factor) {
+    MeasuredNodes nodes = noisy_nodes("ggx:alpha_x=0.4,alpha_y=0.4,f0=0.9,kd=0.1", 3000, 0.01, 0);
+    for (std::size_t i = 0; i < nodes.size(); i += 60)
+      for (std::size_t c = 0; c < nodes.samples.channels; ++c)
+        nodes.samples.values[i * nodes.samples.channels + c] *= factor;
+    return outliers_among(nodes).size();
+  };
+  EXPECT_EQ(found(1.6), 0u);
+  EXPECT_GE(found(4), 20u);
+}
+
 TEST(Outliers, AreNoPeaks) {
   // few samples of a narrow lobe: one alone may stand in it
   for (const std::size_t count : {100, 300, 3000})
