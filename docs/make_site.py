@@ -33,7 +33,7 @@ TOPICS = {
     "evaluating": ("Evaluating and sampling", ["eval/factored_eval.h", "eval/sampler_expression.h",
                                               "eval/tabulated_sampler.h", "formula/"]),
     "surfaces": ("Surfaces", ["capture/", "eval/spatial_eval.h", "surface/"]),
-    "export": ("Export, shaders, textures", ["export/", "shaders/", "textures/"]),
+    "export": ("Export, shaders, textures", ["export/", "image/", "render/", "shaders/", "textures/"]),
     "libraries": ("Libraries", ["library/"]),
     "power": ("The specular power", ["eval/power_span.h", "power/"]),
     "installed": ("Installed with them", ["Installed with them"]),
@@ -42,7 +42,7 @@ TOPICS = {
 # The guide in the order in which a new user reads it; a page that is missing here is an error.
 GUIDE = {
     "Start": ["fitting", "fit-options", "formats", "own-sources", "tables"],
-    "Sources": ["scattered", "nodes", "analytic", "materials"],
+    "Sources": ["scattered", "nodes", "analytic", "materials", "transmission"],
     "Use": ["evaluation", "python", "shaders", "rendering", "area-lights", "export", "studio"],
     "More than one": ["surfaces", "library", "cluster"],
     "Highlights": ["specular", "hardware"],
