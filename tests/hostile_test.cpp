@@ -52,11 +52,13 @@ TEST(Hostile, SeedsAreValid) {
 }
 
 TEST(Hostile, EveryTruncatedBinaryFileThrows) {
-  for (const auto& [name, bytes] : seeds_that(true))
-    for (std::size_t length = 0; length < bytes.size(); ++length) {
-      // The first block of the MBSDF seed is left out by the reader, nothing else may be missing.
-      EXPECT_TRUE(throws_clearly(bytes.substr(0, length))) << name << " cut to " << length;
-    }
+  // The MBSDF seed has two blocks; cut at the end of the first it is a whole file.
+  for (const auto& [name, bytes] : seeds_that(true)) {
+    std::size_t whole = 0;
+    for (std::size_t length = 0; length < bytes.size(); ++length)
+      if (!throws_clearly(bytes.substr(0, length))) ++whole;
+    EXPECT_EQ(whole, name == "mbsdf" ? 1u : 0u) << name;
+  }
 }
 
 // A text cut at the end of a row or of a number's digits is another valid text.
