@@ -24,6 +24,7 @@
 #include <burnish/io/window_xml.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/closest_name.h>
+#include <burnish/math/luminance.h>
 #include <burnish/math/spectrum.h>
 #include <burnish/reflectance/azimuth_mean.h>
 #include <burnish/reflectance/goniometer.h>
@@ -63,7 +64,7 @@ struct Luminance {
     if (source.channels() == 1) return source.eval(wi, wo, f);
     std::array<double, 3> rgb;
     const bool known = source.eval(wi, wo, rgb);
-    f[0] = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];  // [ITU 2015]
+    f[0] = luminance({rgb[0], rgb[1], rgb[2]});
     return known;
   }
 };

@@ -11,6 +11,7 @@
 #include <burnish/io/fourier.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/luminance.h>
 
 namespace burnish {
 
@@ -103,8 +104,9 @@ void eval_pair(const FourierTable& table, const DirectionPair& pair, std::span<d
     stored[c] = cosine_series(a.subspan(c * table.longest, table.longest), cos_phi) / pair.wi.z;
   if (table.channels == 3) {
     // luminance, red and blue: [Jakob 2014] stores no green
-    const double luminance = std::max(stored[0], 0.0), red = stored[1], blue = stored[2];
-    stored = {red, (luminance - 0.2126 * red - 0.0722 * blue) / 0.7152, blue};
+    const double y = std::max(stored[0], 0.0), red = stored[1], blue = stored[2];
+    const Rgb& shares = kLuminanceShares;
+    stored = {red, (y - shares.r * red - shares.b * blue) / shares.g, blue};
   }
   for (std::size_t c = 0; c < table.channels; ++c)
     f[c] = std::isfinite(stored[c]) ? std::max(stored[c], 0.0) : 0.0;

@@ -9,6 +9,7 @@
 #include <burnish/io/text_reader.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/luminance.h>
 #include <burnish/math/written_degrees.h>
 #include <burnish/metrics/albedo.h>
 
@@ -206,8 +207,7 @@ std::vector<double> read_channel(TextReader& reader, const TableSizes& sizes, do
 
 /// The luminance of what a channel or three say.
 double luminance_of_channels(const std::vector<double>& values) noexcept {
-  return values.size() == 1 ? values[0]
-                            : 0.2126 * values[0] + 0.7152 * values[1] + 0.0722 * values[2];  // [ITU 2015]
+  return values.size() == 1 ? values[0] : luminance({values[0], values[1], values[2]});
 }
 
 /// The integral of the values at a block's incidence.

@@ -5,6 +5,7 @@
 
 #include <burnish/fitting/parametric/material_fit.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/luminance.h>
 
 namespace burnish {
 
@@ -41,10 +42,6 @@ std::optional<Seen> mean_seen(BrdfRef source, BrdfRef material, Vec3 wi, Vec3 wo
   }
   if (known == 0) return {};
   return Seen{1.0 / known * sum.source, 1.0 / known * sum.material};
-}
-
-double luminance(Rgb f) {
-  return 0.2126 * f.r + 0.7152 * f.g + 0.0722 * f.b;
 }
 
 /// Sums along wi = wo, source over material.
