@@ -11,6 +11,7 @@
 #include <hwy/contrib/math/math-inl.h>
 
 #include <burnish/eval/lanes-inl.h>
+#include <burnish/formula/mantissa.h>
 
 HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
@@ -47,7 +48,7 @@ HWY_INLINE Lane falling_line(Lane k, const GivenCosine& p);
 // NearExact on vectors. Ports that multiply floats are the narrow place, so that whatever integers and logic can do
 // is theirs. Its coefficients are those of the polynomial log2_ratio times the exponent, made once for a span; octaves
 // are counted in units of `kOctave`.
-#if HWY_TARGET == HWY_AVX3
+#if BURNISH_TARGET_IS_AVX3
 constexpr double kOctave = 1;
 #else
 constexpr double kOctave = 8388608;  // 2^23: the whole part of a sum in these units is a float's exponent
@@ -66,20 +67,21 @@ struct NearExactSpan {
   }
 };
 
-// Splits c = m 2^n, m in [0.645, 1.29), by its bits: what exceeds those of 0.645, without its mantissa, is n 2^23.
+// Splits c = m 2^n by its bits, as mantissa.h says: what exceeds kLeastMantissaBits, without its mantissa, is n 2^23.
 struct SplitLane {
   Lane exponent, mantissa;  // n 2^23 and m
 };
 HWY_INLINE SplitLane split_bits(Lane c) {
   const DI di;
   const auto bits = hn::BitCast(di, c.raw);
-  const auto n = hn::And(hn::Sub(bits, hn::Set(di, 0x3f251eb8)), hn::Set(di, static_cast<int>(0xff800000)));
+  const auto n =
+      hn::And(hn::Sub(bits, hn::Set(di, kLeastMantissaBits)), hn::Set(di, static_cast<int>(0xff800000)));
   return {Lane(hn::ConvertTo(D(), n)), Lane(hn::BitCast(D(), hn::Sub(bits, n)))};
 }
 
 // 2^y for y >= kMinPower in units of kOctave.
 HWY_INLINE Lane exp2_of_octaves(Lane y) {
-#if HWY_TARGET == HWY_AVX3
+#if BURNISH_TARGET_IS_AVX3
   constexpr int kFloor = 9;  // of imm8: no scale, towards minus infinity, no exceptions
   const Lane f{hn::Vec<D>{_mm512_reduce_ps(y.raw.raw, kFloor)}};
   return Lane(hn::Vec<D>{_mm512_scalef_ps(NearExact::exp2_of_fraction(f).raw.raw, y.raw.raw)});
@@ -133,7 +135,7 @@ HWY_INLINE hn::Vec<DDI> word(uint64_t x) {
 }
 
 // c^e for c in [0, 1]; c = m 2^n, m in [2/3, 4/3).
-#if HWY_TARGET == HWY_AVX3
+#if BURNISH_TARGET_IS_AVX3
 HWY_INLINE Doubles exact_power(Doubles c, Doubles e) {
   constexpr int kNearest = 8;  // of imm8: no scale, to the nearest whole number, no exceptions
   // c = 0 counts as the least number of a double, whose powers are 0 as floats

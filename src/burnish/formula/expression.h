@@ -30,7 +30,7 @@ enum class Op {
   acos,
   cos,
   sin,
-  exponent_of,   // n where a = m 2^n, m in [0.645, 1.29)
+  exponent_of,   // n where a = m 2^n, as mantissa.h splits it
   scale_by_two,  // a 2^b, b whole
   vector,        // (a, b, c)
   component,     // number `constant` of a vector

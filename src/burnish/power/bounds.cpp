@@ -2,6 +2,7 @@
 #include <numbers>
 #include <vector>
 
+#include <burnish/formula/mantissa.h>
 #include <burnish/power/bounds.h>
 #include <burnish/power/dual.h>
 
@@ -304,7 +305,8 @@ bool prove_near_exact_parts() {
     const Dual ratio = log2_ratio_exact(t);
     return (NearExact::log2_ratio(t) - ratio) / ratio;
   };
-  constexpr double kLeast = 0.645 - 1e-6, kMost = 1.29 + 1e-6;  // m, with the split's rounding
+  constexpr double kLeast = kLeastMantissa - 1e-6,
+                   kMost = 2 * kLeastMantissa + 1e-6;  // m, with the split's rounding
   const bool centre = prove_small_1d(ratio_error, kLeast - 1, 0, kLogError);
   // n <= -1: |log2 c| >= 1 - log2(1 + t)
   const auto error = [&](const Dual& t) {

@@ -330,7 +330,7 @@ struct GaussianSecondOrder {
   }
 };
 
-/// exp2(e log2 c) with both functions as polynomials: c = m 2^n, m in [0.645, 1.29).
+/// exp2(e log2 c) with both functions as polynomials: c = m 2^n, m in [0.645, 1.29) (formula/mantissa.h).
 struct NearExact {
   static constexpr int kCoefficients = 1;
   template <class T>

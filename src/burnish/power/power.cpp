@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/formula/mantissa.h>
 #include <burnish/math/closest_name.h>
 #include <burnish/power/expression.h>
 #include <burnish/power/power.h>
@@ -44,12 +45,12 @@ double cos_of_root(double q) {
 struct SplitNumber {
   double exponent, mantissa;
 };
-// c = mantissa 2^exponent, mantissa in [0.645, 1.29).
+// c = mantissa 2^exponent, mantissa in [kLeastMantissa, 2 kLeastMantissa).
 SplitNumber split(double c) {
   if (c <= 0) return {-127, 1};  // as the float bits of 0 read
   int n = 0;
   double m = std::frexp(c, &n);
-  if (m < 0.645) {
+  if (m < kLeastMantissa) {
     m *= 2;
     --n;
   }
