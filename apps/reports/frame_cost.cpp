@@ -13,6 +13,7 @@
 #include <burnish/factors/fetches.h>
 #include <burnish/file.h>
 #include <burnish/fitting/fit.h>
+#include <burnish/io/csv_columns.h>
 #include <burnish/io/open_source.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/half_diff_table.h>
@@ -138,25 +139,6 @@ struct Device {
 };
 constexpr Device kGpu{"gpu", "GPU"}, kProcessor{"processor", "processor"};
 
-// The cells of a line of commas; a cell in quotes may hold commas, and quotes twice.
-std::vector<std::string> cells_of(std::string_view line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"') {
-      if (quoted && line.substr(i + 1).starts_with('"'))
-        cells.back() += line[i++];
-      else
-        quoted = !quoted;
-    } else if (line[i] == ',' && !quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back() += line[i];
-    }
-  }
-  return cells;
-}
-
 // The rows of a device's file below its head; none where it was not measured.
 std::vector<std::vector<std::string>> rows_of(const fs::path& folder, const Device& device,
                                               const char* kind) {
@@ -165,10 +147,13 @@ std::vector<std::vector<std::string>> rows_of(const fs::path& folder, const Devi
   if (!fs::exists(file)) return rows;
   const FileBytes bytes = read_file(file);
   std::string_view text = bytes.text();
+  std::vector<std::string_view> cells;
   for (bool head = true; !text.empty(); head = false) {
     const std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(text.size(), line.size() + 1));
-    if (!head) rows.push_back(cells_of(line));
+    if (head) continue;
+    split_cells(line, ',', cells);
+    rows.emplace_back(cells.begin(), cells.end());
   }
   return rows;
 }
