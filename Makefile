@@ -1,6 +1,6 @@
 # make demo   installs packages, builds the command line, and takes a measurement to two textures (INPUT=file for your own)
 # make test   installs tools, builds with sanitizers and optimized, runs every test
-# make check  a quarter of that: one build, unit tests, documents
+# make check  a quick look: one build, unit tests, documents
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
 # make deb, make wheel, make sdist, make npm: packages in build/packages; make release: all of them, the sources and the

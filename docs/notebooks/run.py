@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Executes the notebooks of this folder: docs/notebooks/run.py [--out FOLDER] [NAME...], all of them without a name.
 
-Needs what `pip install burnish[notebooks]` installs. Each runs in a folder of its own, FOLDER/NAME (build/notebooks), and
+Needs what `pip install '.[notebooks]'` installs. Each runs in a folder of its own, FOLDER/NAME (build/notebooks), and
 is written to FOLDER/NAME.ipynb with what it printed and drew; all run at once. The notebooks here have no outputs; one
 that has them is an error. Prints what is wrong as FILE: MESSAGE and exits with 1 if anything is."""
 import argparse
