@@ -39,11 +39,9 @@ noexcept {
 namespace std {
 
 template <class To, class From>
-requires(sizeof(To) == sizeof(From)) To bit_cast(const From& from)
+requires(sizeof(To) == sizeof(From)) constexpr To bit_cast(const From& from)
 noexcept {
-  To to;
-  memcpy(&to, &from, sizeof(To));
-  return to;
+  return __builtin_bit_cast(To, from);
 }
 
 inline bool operator==(const from_chars_result& a, const from_chars_result& b) noexcept {

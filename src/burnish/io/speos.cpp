@@ -83,7 +83,7 @@ std::vector<double> next_angles(TextReader& reader, std::string_view what, std::
 /// Thetas of light that passed through count from 90 to 180 degrees: makes them those of the mirrored directions.
 void mirror_thetas(Block& block) {
   const std::size_t phis = block.phi_deg.size();
-  std::ranges::reverse(block.theta_deg);
+  std::reverse(block.theta_deg.begin(), block.theta_deg.end());
   for (double& theta : block.theta_deg) theta = 180 - theta;
   std::vector<double> values;
   values.reserve(block.values.size());
