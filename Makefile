@@ -60,25 +60,29 @@ check: docs-check include-check
 	@ctest --preset release -j $(JOBS) -R '^burnish_tests\.' -LE long
 
 test-announcement:
+	@mkdir -p build && date +%s > $(STARTED)
 	@echo "Debian's packages are installed where they are missing (cmake/debian-*packages.txt),"
 	@echo "others from PyPI and npm into build/ (python/requirements.txt, tests/web/package.json, clang-format)."
 
+# How long `make test` has run when a step ends.
+STARTED := build/test-started
+done = echo "make test: $(1), $$(($$(date +%s) - $$(cat $(STARTED)))) s after its start"
 test: test-announcement test-deps format-check docs-check include-check
 	@mpi=$$(command -v mpicxx > /dev/null && echo ON || echo OFF); \
 	for preset in dev release; do \
 	  case $$preset in release) options="-DBURNISH_MPI=$$mpi -DBURNISH_WERROR=$(WERROR)" ;; *) options="$(DEV_OPTIONS)" ;; esac; \
 	  cmake --preset $$preset $$options > /dev/null && \
-	  cmake --build --preset $$preset -j $(JOBS) && \
-	  ctest --preset $$preset -j $(JOBS) || exit 1; \
+	  cmake --build --preset $$preset -j $(JOBS) && $(call done,built the preset $$preset) && \
+	  ctest --preset $$preset -j $(JOBS) && $(call done,tested the preset $$preset) || exit 1; \
 	  sed -n '/: Skipped$$/{n;p}' build/$$preset/Testing/Temporary/LastTest.log | sort | uniq -c | sed 's/^/skipped/'; \
 	done
-	@if command -v em++ > /dev/null && command -v node > /dev/null && command -v chromium > /dev/null; then \
-	  $(MAKE) -s studio; fi
 	@tests/web/check.sh --skip-offline > build/web.log 2>&1 & web=$$!; \
-	BURNISH_WERROR=$(WERROR) python/check.sh --skip-offline && tests/web/package.sh --if-built; others=$$?; \
+	BURNISH_WERROR=$(WERROR) python/check.sh --skip-offline; others=$$?; \
 	wait $$web; web=$$?; cat build/web.log; exit $$((others || web))
+	@$(call done,tested the Python package and pages)
 	@tests/docs/site.sh --skip-offline --no-notebooks
 	@tests/cluster/run.py $(BURNISH) --if-there
+	@$(call done,passed)
 
 python: test-deps build
 	@BURNISH_WERROR=$(WERROR) python/check.sh
@@ -132,8 +136,11 @@ studio: studio-deps
 	@rm -rf build/studio && mkdir -p build/studio && cp -r web/studio/* build/wasm/package build/studio
 	@cp build/studio/package/LICENSE build/studio/package/THIRD_PARTY_NOTICES build/studio/package/burnish.cdx.json build/studio
 
-studio-test: studio build
+studio-test: studio test-deps
+	@cmake --preset release -DBURNISH_WERROR=$(WERROR) > /dev/null
+	@cmake --build --preset release -j $(JOBS) --target burnish_cli burnish_input_files burnish_mesh_frames
 	@tests/web/package.sh
+	@tests/web/check.sh
 
 cluster-test: build
 	@missing=$$(for p in slurmctld slurmd slurm-client munge; do \

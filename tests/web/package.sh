@@ -1,16 +1,14 @@
 #!/usr/bin/env bash
-# Tests the package that `make studio` built, beside the command line: sizes, then tests/web/package.test.mjs. With
-# --if-built it says so and succeeds where there is no package or no node.
+# Tests the package that `make studio` built, beside the command line: sizes, then tests/web/package.test.mjs.
 set -eu
 cd "$(dirname "$0")/../.."
-skip() {
-  [ "${1:-}" = --if-built ] || exit 1
-  echo "studio: SKIPPED: $2" >&2
-  exit 0
+missing() {
+  echo "studio: $1" >&2
+  exit 1
 }
 package=build/studio/package
-[ -f "$package/burnish.wasm" ] || skip "${1:-}" "no $package, which make studio builds"
-command -v node > /dev/null || skip "${1:-}" "no node"
+[ -f "$package/burnish.wasm" ] || missing "no $package, which make studio builds"
+command -v node > /dev/null || missing "no node"
 
 limit=$((2 << 20))
 size=$(cat "$package"/*.wasm "$package"/*.js | gzip -9 | wc -c)
