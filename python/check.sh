@@ -22,4 +22,5 @@ tests=build/release/src/burnish/burnish_tests
 status=0
 tests/notices/check.py --python "$(echo "$venv"/lib/python3*/site-packages)" || status=$?
 [ "$status" = 0 ] || [ "$status" = 77 ] || exit "$status"
+tests/options/agree.py build/release/apps/burnish/burnish --python "$venv/bin/python"
 exec "$venv/bin/python" -m pytest -q

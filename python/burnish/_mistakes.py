@@ -45,7 +45,7 @@ class _Signature:
             return 0, f"expected at most {most} arguments without a name, found {found}"
         for name in keywords:
             if name not in self.names() and not self.any_keyword:
-                return 0, _burnish._expected_one_of(self.names(), name)
+                return -1, _burnish._expected_one_of(self.names(), name)  # another way to call it knows the name
         by_name = {one.arg: one for one in self.positional + self.keywords}
         given = {one.arg: value for one, value in zip(self.positional, positional)}
         for name in keywords:

@@ -318,6 +318,7 @@ def test_misspelt_keywords_are_told_in_one_line(ggx, model, tmp_path):
             "error_figures: expected at most 2 arguments without a name, found 3",
         ),
         (lambda: burnish.fit(GGX), "fit: source: expected Source, found str"),
+        (lambda: burnish.fit(GGX, model="pqp"), "fit: source: expected Source, found str"),
         (lambda: burnish.open_source(3), "spec: expected a path or a spec, found 3"),
     ):
         with pytest.raises(TypeError, match=f"^{said}") as told:
