@@ -13,7 +13,7 @@
 
 namespace burnish {
 
-std::string encode_png(const Image8& image) {
+std::string encode_png(const Image8& image, PngValues) {  // it writes no chunk of colours
   if (image.channels != 3 && image.channels != 4)
     throw Error(fmt::format("a PNG has 3 or 4 channels, not {}", image.channels));
   if (image.width <= 0 || image.height <= 0) throw Error("a PNG has at least one pixel");

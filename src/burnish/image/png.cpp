@@ -1,4 +1,5 @@
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <png.h>
@@ -9,7 +10,23 @@
 
 namespace burnish {
 
-std::string encode_png(const Image8& image) {
+namespace {
+
+// Returns a PNG without the first chunk of that type. A chunk is its length, type, content and checksum.
+std::string without_chunk(std::string png, std::string_view type) {
+  constexpr std::size_t kSignature = 8, kAround = 12;
+  for (std::size_t at = kSignature; at + kAround <= png.size();) {
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) length = length << 8 | static_cast<unsigned char>(png[at + i]);
+    if (png.compare(at + 4, 4, type) == 0) return png.erase(at, length + kAround);
+    at += length + kAround;
+  }
+  return png;
+}
+
+}  // namespace
+
+std::string encode_png(const Image8& image, PngValues values) {
   if (image.channels != 3 && image.channels != 4)
     throw Error(fmt::format("a PNG has 3 or 4 channels, not {}", image.channels));
   if (image.width <= 0 || image.height <= 0) throw Error("a PNG has at least one pixel");
@@ -23,7 +40,7 @@ std::string encode_png(const Image8& image) {
   if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr))
     throw Error(fmt::format("cannot encode a PNG: {}", png.message));
   bytes.resize(size);
-  return bytes;
+  return values == PngValues::linear ? without_chunk(std::move(bytes), "sRGB") : bytes;
 }
 
 Image8 decode_png(const std::string& bytes, const std::string& name) {

@@ -25,6 +25,16 @@ TEST(Png, RoundTripsEveryByte) {
   }
 }
 
+// Readers that know colours would decode linear numbers whose file calls them sRGB.
+TEST(Png, SaysNothingOfLinearNumbers) {
+  const Image8 image = random_image(37, 11, 3);
+  const std::string linear = encode_png(image, PngValues::linear);
+  for (const char* chunk : {"sRGB", "gAMA", "cHRM", "iCCP"})
+    EXPECT_EQ(linear.find(chunk), linear.npos) << chunk;
+  EXPECT_NE(encode_png(image).find("sRGB"), linear.npos);
+  EXPECT_EQ(decode_png(linear, "memory"), image);
+}
+
 TEST(Png, RoundTripsThroughAFileAndLeavesNothingElse) {
   const TemporaryFolder folder("png");
   const Image8 image = random_image(5, 3, 3);

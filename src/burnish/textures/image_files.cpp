@@ -68,7 +68,7 @@ std::string encode_png_table(const Table& table) {
   const std::size_t step = table.channels == 1 ? 1 : 3;
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     image.pixels[i] = static_cast<std::uint8_t>(std::lround(255 * table.values[step == 1 ? i / 3 : i]));
-  return encode_png(image);
+  return encode_png(image, PngValues::linear);
 }
 
 }  // namespace burnish
