@@ -1,4 +1,5 @@
 #include <cmath>
+#include <span>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -7,6 +8,7 @@
 
 #include <burnish/export/usda.h>
 #include <burnish/math/angles.h>
+#include <burnish/render/mesh/shapes.h>
 #include <burnish/shaders/frame_function.h>
 
 namespace burnish {
@@ -17,7 +19,8 @@ std::string color_text(const Rgb& c) {
   return fmt::format("({}, {}, {})", c.r, c.g, c.b);
 }
 
-// {0} name, {1} to {3} colour, metallic and roughness of the preview, {4} the node's inputs, {5} other nodes
+// {0} name, {1} to {3} colour, metallic and roughness of the preview, {4} the node's inputs, {5} other nodes, {6} the
+// mesh's corners
 constexpr std::string_view kLayer = R"(#usda 1.0
 (
     defaultPrim = "{0}"
@@ -30,14 +33,14 @@ def Xform "{0}" (
     kind = "component"
 )
 {{
-    def Sphere "sphere" (
+    def Mesh "sphere" (
         prepend apiSchemas = ["MaterialBindingAPI"]
     )
     {{
         float3[] extent = [(-1, -1, -1), (1, 1, 1)]
-        double radius = 1
         rel material:binding = </{0}/material>
-    }}
+        uniform token subdivisionScheme = "none"
+{6}    }}
 
     def Material "material"
     {{
@@ -62,6 +65,34 @@ def Xform "{0}" (
 {5}    }}
 }}
 )";
+
+constexpr int kColumns = 48, kRows = 24;
+
+// The attributes of a mesh: triangles, their corners' places, normals and texture coordinates. A Sphere of USD has no
+// texture coordinates, so that readers cannot lay tangents over it.
+std::string mesh_text(const Mesh& mesh) {
+  std::string counts, indices, points, normals, uvs;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    counts += counts.empty() ? "3" : ", 3";
+    indices += fmt::format("{}{}, {}, {}", indices.empty() ? "" : ", ", a, b, c);
+  }
+  const auto add = [](std::string& list, std::span<const float> values) {
+    list += list.empty() ? "(" : ", (";
+    for (std::size_t i = 0; i < values.size(); ++i) list += fmt::format("{}{:.6g}", i ? ", " : "", values[i]);
+    list += ")";
+  };
+  for (const Vertex& v : mesh.vertices) {
+    add(points, v.position);
+    add(normals, v.normal);
+    add(uvs, v.uv);
+  }
+  return fmt::format(
+      "        int[] faceVertexCounts = [{}]\n        int[] faceVertexIndices = [{}]\n"
+      "        point3f[] points = [{}]\n"
+      "        normal3f[] normals = [{}] (\n            interpolation = \"vertex\"\n        )\n"
+      "        texCoord2f[] primvars:st = [{}] (\n            interpolation = \"vertex\"\n        )\n",
+      counts, indices, points, normals, uvs);
+}
 
 // A node of vectors with its inputs, a line each.
 std::string vector_node(std::string_view name, std::string_view id, const std::vector<std::string>& inputs) {
@@ -106,7 +137,7 @@ std::string usda_layer(const OpenPbrParameters& parameters, const MetallicRoughn
     tangent = tangent_nodes(angle, name);
   }
   return fmt::format(kLayer, name, color_text(preview.base_color), preview.metallic, preview.roughness,
-                     inputs, tangent);
+                     inputs, tangent, mesh_text(make_sphere(kColumns, kRows)));
 }
 
 }  // namespace burnish

@@ -1,5 +1,9 @@
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,6 +29,31 @@ TEST(Usda, HasAPreviewAndOpenPbr) {
               input.name != "geometry_tangent");
   EXPECT_EQ(std::ranges::count(text, '{'), std::ranges::count(text, '}'));
   EXPECT_THROW(usda_layer(parameters, {}, "a\"b"), Error);
+}
+
+// Each corner lies on the unit sphere, and a texture coordinate and a normal belong to it.
+TEST(Usda, HasASphereWithTextureCoordinates) {
+  const std::string text = usda_layer({}, {}, "paint");
+  const auto numbers = [&](const std::string& name) {
+    const std::size_t from = text.find(name + " = [") + name.size() + 4;
+    std::string list = text.substr(from, text.find(']', from) - from);
+    std::ranges::replace_if(
+        list, [](char c) { return c == '(' || c == ')' || c == ','; }, ' ');
+    std::istringstream in(list);
+    return std::vector<double>(std::istream_iterator<double>(in), {});
+  };
+  const std::vector<double> points = numbers("points"), normals = numbers("normals"),
+                            uvs = numbers("primvars:st"), counts = numbers("faceVertexCounts"),
+                            indices = numbers("faceVertexIndices");
+  ASSERT_GT(points.size(), 3000u);
+  EXPECT_EQ(points.size(), normals.size());
+  EXPECT_EQ(points.size() / 3, uvs.size() / 2);
+  for (std::size_t i = 0; i < points.size(); i += 3)
+    EXPECT_NEAR(std::hypot(points[i], points[i + 1], points[i + 2]), 1, 1e-5);
+  EXPECT_EQ(indices.size(), 3 * counts.size());
+  EXPECT_EQ(std::ranges::max(indices), static_cast<double>(points.size()) / 3 - 1);
+  EXPECT_EQ(std::ranges::min(uvs), 0);
+  EXPECT_EQ(std::ranges::max(uvs), 1);
 }
 
 TEST(Usda, TurnsTangentsByNodes) {
