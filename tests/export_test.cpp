@@ -90,6 +90,23 @@ TEST_F(Export, MultipliesInHalfPrecisionWhereAsked) {
   EXPECT_EQ(exports("--to cpp --area"), 2);
 }
 
+TEST_F(Export, NumbersTexturesAsItIsTold) {
+  ASSERT_EQ(exports("--to glsl,hlsl,slang,wgsl,dds --binding 4 --set 2 --space 3"), 0)
+      << read(folder_ / "said");
+  EXPECT_THAT(read(folder_ / "out/two_lobes.glsl"),
+              HasSubstr("layout(set = 2, binding = 4) uniform sampler2D"));
+  EXPECT_THAT(read(folder_ / "out/two_lobes.hlsl"), HasSubstr("register(t4, space3)"));
+  EXPECT_THAT(read(folder_ / "out/two_lobes.slang"), HasSubstr("[[vk::binding(4, 2)]]"));
+  EXPECT_THAT(read(folder_ / "out/two_lobes.wgsl"), HasSubstr("@group(2) @binding(4)"));
+  EXPECT_TRUE(read(folder_ / "out/two_lobes.tables.dds").starts_with("DDS "));
+  ASSERT_EQ(exports("--to wgsl --half --appended"), 0);
+  EXPECT_THAT(read(folder_ / "out/two_lobes.wgsl"), Not(HasSubstr("enable f16")));
+  EXPECT_EQ(exports("--to glsl_es --set 1"), 2);
+  EXPECT_EQ(exports("--to glsl --space 1"), 2);
+  EXPECT_EQ(exports("--to glsl --binding -1"), 2);
+  EXPECT_EQ(exports("--to glsl --set 1 --environment sun"), 2);
+}
+
 TEST_F(Export, RefusesWhatIsNoModelAndNoTargetAndLeavesNothing) {
   EXPECT_EQ(exports("--to jpeg"), 2);
   EXPECT_EQ(exports("--to usda --cells 20"), 2);

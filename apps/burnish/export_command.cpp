@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -29,7 +30,9 @@ struct ExportArguments {
   std::string model, folder, name, power, environment;
   std::vector<std::string> to;
   int cells = ExportOptions{}.cells;
-  bool exact = false, half = false, plain = false, blocks = false, mips = false, area = false, json = false;
+  std::optional<int> binding, set, space;
+  bool appended = false, exact = false, half = false, plain = false, blocks = false, mips = false,
+       area = false, json = false;
 };
 
 std::string name_of(const std::string& path) {
@@ -45,7 +48,9 @@ ExportOptions options_of(const ExportArguments& arguments) {
                         .compressed = !arguments.plain,
                         .blocks = arguments.blocks,
                         .area = arguments.area,
-                        .cells = arguments.cells};
+                        .cells = arguments.cells,
+                        .places = {arguments.binding, arguments.set, arguments.space},
+                        .appended = arguments.appended};
   for (const std::string& to : arguments.to) options.to.push_back(export_target(to));
   return options;
 }
@@ -82,7 +87,9 @@ ExportedFiles exported_model(const ExportArguments& arguments, const Source& sou
     throw CLI::ValidationError(
         fmt::format("--area: expected --to {} with it, found others", targets_that(has_half_products)));
   if (options.name.empty()) options.name = name_of(arguments.model);
-  const FactoredBrdf brdf = to_model(source).brdf;
+  Model model = to_model(source);
+  const FactoredBrdf& brdf = model.brdf;
+  options.notes = std::move(model.notes);
   if (source.findings.transmits())
     fmt::print(
         stderr,
@@ -116,7 +123,26 @@ ExportedFiles exported_files(const ExportArguments& arguments) {
   return analytic ? exported_analytic(arguments, *analytic) : exported_model(arguments, source);
 }
 
+// Each number needs a target that has it, and textures that have places.
+void check_numbers(const ExportArguments& arguments) {
+  const ExportOptions options = options_of(arguments);
+  const auto check = [&](const char* option, const std::optional<int>& number,
+                         bool (*has)(ExportTarget target) noexcept) {
+    if (!number) return;
+    if (std::ranges::none_of(options.to, has))
+      throw CLI::ValidationError(
+          fmt::format("{}: expected --to {} with it, found others", option, targets_that(has)));
+    if (!arguments.environment.empty())
+      throw CLI::ValidationError(
+          fmt::format("{}: expected no --environment with it, found {}", option, arguments.environment));
+  };
+  check("--binding", arguments.binding, has_bindings);
+  check("--set", arguments.set, has_sets);
+  check("--space", arguments.space, has_spaces);
+}
+
 void run(const ExportArguments& arguments) {
+  check_numbers(arguments);
   check_folder_name(arguments.folder);
   check_folder(arguments.folder);
   const ExportedFiles exported = [&] {
@@ -190,6 +216,18 @@ void add_export_command(CLI::App& app) {
       ->excludes(exact);
   verb->add_flag("--area", arguments->area,
                  "Writes functions of area lights too, NAME.area.*, with their own texture; cpp has none.");
+  constexpr int kMostBindings = 1 << 20;
+  verb->add_option(
+          "--binding", arguments->binding,
+          "Numbers bindings of glsl, slang and wgsl, and registers of hlsl, from this one (default: 0).")
+      ->check(in_range(0, kMostBindings));
+  verb->add_option("--set", arguments->set,
+                   "Puts textures into this descriptor set of glsl, for Vulkan, and slang, or group of wgsl.")
+      ->check(in_range(0, kMostBindings));
+  verb->add_option("--space", arguments->space, "Puts textures into this register space of hlsl.")
+      ->check(in_range(0, kMostBindings));
+  verb->add_flag("--appended", arguments->appended,
+                 "Writes shaders to stand behind others in one file: without `enable f16` of wgsl.");
   verb->add_flag("--mips", arguments->mips,
                  "Writes KTX2 with mip levels, which average over the directions of a texel.");
   verb->add_flag("--plain", arguments->plain, "Writes KTX2 without Zstandard.");

@@ -57,7 +57,9 @@ nb::dict handed_out(const ExportedFiles& exported, const std::optional<std::file
 nb::dict exported_model(const OpenedModel& model, const Names& to,
                         const std::optional<std::filesystem::path>& folder,
                         const std::optional<std::string>& name, bool exact, bool half, bool mips,
-                        bool compressed, int cells, const std::optional<std::string>& environment) {
+                        bool compressed, int cells, const std::optional<std::string>& environment,
+                        std::optional<int> binding, std::optional<int> set, std::optional<int> space,
+                        bool appended) {
   const ExportedFiles exported = [&] {
     const nb::gil_scoped_release unlocked;
     ExportOptions options{.to = targets_of(to),
@@ -66,7 +68,10 @@ nb::dict exported_model(const OpenedModel& model, const Names& to,
                           .half = half,
                           .mips = mips,
                           .compressed = compressed,
-                          .cells = cells};
+                          .cells = cells,
+                          .places = {binding, set, space},
+                          .appended = appended,
+                          .notes = model.source().findings.notes};
     if (environment) options.environment = open_environment(*environment);
     return export_model(model.brdf(), options);
   }();
@@ -96,11 +101,13 @@ void bind_exports(nb::module_& m) {
       nb::kw_only(), nb::arg("name") = nb::none(), nb::arg("exact") = defaults.exact,
       nb::arg("half") = defaults.half, nb::arg("mips") = defaults.mips,
       nb::arg("compressed") = defaults.compressed, nb::arg("cells") = defaults.cells,
-      nb::arg("environment") = nb::none(),
-      nb::sig(
-          "def export(model: Model, to: str | list[str], folder: str | os.PathLike | None = None, *, "
-          "name: str | None = None, exact: bool = False, half: bool = False, mips: bool = False, "
-          "compressed: bool = True, cells: int = 90, environment: str | None = None) -> dict[str, bytes]"),
+      nb::arg("environment") = nb::none(), nb::arg("binding") = nb::none(), nb::arg("set") = nb::none(),
+      nb::arg("space") = nb::none(), nb::arg("appended") = defaults.appended,
+      nb::sig("def export(model: Model, to: str | list[str], folder: str | os.PathLike | None = None, *, "
+              "name: str | None = None, exact: bool = False, half: bool = False, mips: bool = False, "
+              "compressed: bool = True, cells: int = 90, environment: str | None = None, "
+              "binding: int | None = None, set: int | None = None, space: int | None = None, "
+              "appended: bool = False) -> dict[str, bytes]"),
       fmt::format(
           "What `burnish export` writes, by the files' names, the last one the manifest NAME.json; into the "
           "folder\n"
@@ -115,7 +122,8 @@ void bind_exports(nb::module_& m) {
           "\"sun\", "
           "\"studio\" or an OpenEXR picture of all "
           "directions, "
-          "whose light {}\nshow.",
+          "whose light {}\nshow. binding, set, space: numbers of textures in shaders, as `burnish export "
+          "--binding`, `--set` and\n`--space` have them. appended: shaders go behind others in one file.",
           quoted_names(export_target_names()), targets_that(shows_environment))
           .c_str());
   m.def("export", &exported_analytic, nb::arg("spec"), nb::arg("to"), nb::arg("folder") = nb::none(),

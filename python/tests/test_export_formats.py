@@ -28,7 +28,7 @@ def test_materialx_finds_its_document_valid_and_makes_glsl_of_it(name, folders, 
     from export_pictures import generated_glsl
 
     vertex, pixel, textures = generated_glsl(folders / name / "m.mtlx")
-    assert ("burnish_m_world" in pixel) == (name not in ("openpbr", "turned"))
+    assert ("burnish_m_bsdf" in pixel) == (name not in ("openpbr", "turned"))
     assert all(path.exists() for path in textures.values())
     assert len(textures) == {"model": 1, "lobes": 1, "volume": 2, "openpbr": 0, "turned": 0}[name]
     if not shutil.which("glslangValidator"):

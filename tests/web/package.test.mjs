@@ -309,7 +309,7 @@ test("Garbage is one clear line, and the next file opens", async () => {
 
 test("Shaders, exports and volumes have what they say", async () => {
   const model = await open(bytesOf(at("a.burnish")), {name: "a"});
-  for (const language of ["glsl", "glsl_es", "hlsl", "msl", "wgsl", "cpp"]) {
+  for (const language of ["glsl", "glsl_es", "hlsl", "msl", "slang", "wgsl", "cpp"]) {
     const {code, textures, cost, function: called} = await model.shader(language);
     assert.ok(code.includes(called) && cost.fetches > 0);
     for (const t of textures) assert.equal(t.data.length, t.width * Math.max(t.height, 1) * Math.max(t.depth, 1) * (t.format === "rgb9e5" ? 1 : t.channels));

@@ -576,7 +576,7 @@ assert.deepEqual(lobeApart, {size: [0, 0], differ: 0, drawn: true});
 // what was measured, and the fit of it
 for (const entry of await page.evaluate(() => window.studio.entries.slice(0, 2).map(({id}) => id)))
   assert.ok(fs.statSync(await save(page, `[data-of="${entry}"] [data-export=merl]`, `${entry}.binary`)).size > 1000);
-for (const language of ["glsl", "glsl_es", "hlsl", "wgsl", "msl", "cpp"]) {
+for (const language of ["glsl", "glsl_es", "hlsl", "slang", "wgsl", "msl", "cpp"]) {
   await page.selectOption("#take select", language);
   assert.match(fs.readFileSync(await save(page, "[data-export=shader]", `fitted.${language}`), "utf8"), /burnish_/);
 }

@@ -110,11 +110,11 @@ export interface ExportOptions {
 /** One file: those of the verb `convert`. "exr" is a model's own file, of others an image of slices. */
 export type FileKind = "burnish" | "model" | "exr" | "merl" | "utia" | "rgl" | "mbsdf" | "zemax" | "tensortree" | "openmaterial" |
   "astm" | "csv";
-/** Several files, of models: those of the verb `export`; of surfaces ktx2, png, gltf, three, html and languages. */
-export type FilesKind = "ktx2" | "cube" | "png" | "gltf" | "materialx" | "usda" | "mdl" | "three" | "babylon" | "html" | Language;
+/** Several files, of models: those of the verb `export`; of surfaces ktx2, dds, png, gltf, three, html and languages. */
+export type FilesKind = "ktx2" | "dds" | "cube" | "png" | "gltf" | "materialx" | "usda" | "mdl" | "three" | "babylon" | "html" | Language;
 export interface NamedFile { name: string; bytes: Uint8Array; }
 
-export type Language = "glsl" | "glsl_es" | "hlsl" | "msl" | "wgsl" | "cpp";
+export type Language = "glsl" | "glsl_es" | "hlsl" | "msl" | "slang" | "wgsl" | "cpp";
 
 export interface Volume {
   /** Cells along theta_h, theta_d and phi_d. */

@@ -6,7 +6,7 @@ import {isSurface, modelShown, onChange, referenceOf, state} from "./state.js";
 import {picture} from "./stage.js";
 import {zip} from "./zip.js";
 
-const languages = {glsl: "GLSL 4.50", glsl_es: "GLSL ES 3.00", hlsl: "HLSL", wgsl: "WGSL", msl: "Metal", cpp: "C++"};
+const languages = {glsl: "GLSL 4.50", glsl_es: "GLSL ES 3.00", hlsl: "HLSL", slang: "Slang", wgsl: "WGSL", msl: "Metal", cpp: "C++"};
 const modelFiles = {burnish: ".burnish", model: "OpenEXR", ktx2: "KTX2 textures", three: "three.js", babylon: "Babylon.js", html: "Page", gltf: "glTF",
                     materialx: "MaterialX", usda: "USD", mdl: "MDL"};
 const surfaceFiles = {burnish: ".burnish", ktx2: "KTX2 textures", png: "PNG maps", three: "three.js", html: "Page", gltf: "glTF"};
@@ -81,7 +81,7 @@ function shaderGroup(entry) {
     toggle.textContent = textOpen ? "Hide" : "Show";
     fill().catch(sayError);
   }}, textOpen ? "Hide" : "Show");
-  const extension = {glsl: "glsl", glsl_es: "es.glsl", hlsl: "hlsl", wgsl: "wgsl", msl: "metal", cpp: "h"};
+  const extension = {glsl: "glsl", glsl_es: "es.glsl", hlsl: "hlsl", slang: "slang", wgsl: "wgsl", msl: "metal", cpp: "h"};
   fill().catch(sayError);
   return make("div", {}, make("h3", {}, `Shader of ${entry.name}`),
     make("div", {class: "buttons"}, select, toggle,

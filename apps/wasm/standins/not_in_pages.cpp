@@ -32,7 +32,8 @@ AreaLightTable fit_area_lights(BrdfRef, const AreaLightFitOptions&) {
   throw Error("export: expected no area lights in a page, found some");
 }
 
-AreaLightShader generate_shader(const AreaLightTable&, ShaderLanguage, const std::string&) {
+AreaLightShader generate_shader(const AreaLightTable&, ShaderLanguage, const std::string&,
+                                const ShaderPlaces&) {
   throw Error("shader: expected no area lights in a page, found some");
 }
 

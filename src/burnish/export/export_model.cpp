@@ -23,6 +23,7 @@
 #include <burnish/reflectance/analytic.h>
 #include <burnish/render/gl/surface_environment.h>
 #include <burnish/shaders/shader.h>
+#include <burnish/textures/dds.h>
 #include <burnish/textures/image_files.h>
 #include <burnish/textures/ktx2.h>
 
@@ -44,7 +45,9 @@ class ModelExport {
                   {"name", options.name},
                   {"model", model_expression(brdf)},
                   {"channels", brdf.channels()},
-                  {"table_bytes", brdf.table_bytes()}} {}
+                  {"table_bytes", brdf.table_bytes()}} {
+    if (json errors = errors_entry(options.notes); !errors.is_null()) manifest_["errors"] = std::move(errors);
+  }
 
   ExportedFiles run() &&;
 
@@ -61,7 +64,7 @@ class ModelExport {
   }
 
   void add_shader(ShaderLanguage language);
-  void add_textures();
+  void add_textures(bool ktx2, bool dds);
   void add_levels();
   void add_cube_maps();
   void add_images(ExportTarget target, std::string (*encode)(const Table& table));
@@ -87,7 +90,12 @@ void ModelExport::add_shader(ShaderLanguage language) {
   const bool cpp = language == ShaderLanguage::cpp;
   const ShaderFilter filter = options_.exact || cpp ? ShaderFilter::exact : ShaderFilter::hardware;
   const bool half = options_.half && !cpp;
-  const Shader shader = generate_shader(brdf_, {language, filter, options_.name, half});
+  const Shader shader = generate_shader(brdf_, {.language = language,
+                                                .filter = filter,
+                                                .name = options_.name,
+                                                .half_products = half,
+                                                .places = options_.places,
+                                                .appended = options_.appended});
   const char* filter_name = filter == ShaderFilter::exact ? "exact" : "hardware";
 
   json entry = manifest_entry(language, options_.name, shader);
@@ -102,22 +110,25 @@ void ModelExport::add_shader(ShaderLanguage language) {
       {file, fmt::format("{} filter{}", filter_name, half ? ", half products" : ""), shader.cost});
 }
 
-// Adds the textures that generated shaders read.
-void ModelExport::add_textures() {
+// Adds the textures that generated shaders read, in either format or both.
+void ModelExport::add_textures(bool ktx2, bool dds) {
   const Shader shader = generate_shader(brdf_, {.name = options_.name});
-  for (std::size_t i = 0; i < shader.textures.size(); ++i) {
-    const ShaderTexture& shown = shader.textures[i];
+  for (const ShaderTexture& shown : shader.textures) {
     const Texture texture{.format = shown.format,
                           .channels = shown.channels,
                           .width = shown.width,
                           .height = shown.height,
                           .depth = shown.depth,
                           .levels = {shown.values}};
-    const std::string& file =
-        add(fmt::format("{}_{}.ktx2", options_.name, i), encode_ktx2(texture, options_.compressed));
+    const std::string as_ktx2 = texture_file(shown, options_.name, "ktx2"),
+                      as_dds = texture_file(shown, options_.name, "dds");
+    if (ktx2) add(as_ktx2, encode_ktx2(texture, options_.compressed));
+    if (dds) add(as_dds, encode_dds(texture));
 
     // where each table's nodes are
-    json entry = manifest_entry(file, texture);
+    json entry = manifest_entry(ktx2 ? as_ktx2 : as_dds, texture);
+    if (ktx2 && dds) entry["dds"] = as_dds;
+    if (options_.exact) entry["filter"] = "any";
     entry["sampler"] = shown.name;
     for (const PlacedTable& placed : shown.tables) {
       const TableLayout& layout = brdf_.tables()[placed.table].layout;
@@ -176,7 +187,6 @@ const MetallicRoughnessFit& ModelExport::core() {
   if (!core_) {
     core_ = fit_metallic_roughness(brdf_);
     json entry = core_entry(core_->material);
-    entry["anisotropyStrength"] = core_->material.anisotropy;
     entry["psnr"] = core_->psnr;
     manifest_["core_material"] = std::move(entry);
   }
@@ -257,7 +267,7 @@ void ModelExport::add_area_lights() {
   ShaderTexture texture;
   for (const ShaderLanguage language : kShaderLanguages) {
     if (!wants(language) || language == ShaderLanguage::cpp) continue;
-    AreaLightShader shader = generate_shader(table, language, options_.name);
+    AreaLightShader shader = generate_shader(table, language, options_.name, options_.places);
     const std::string& file = add(shader_file(language, options_.name + ".area"), shader.text);
     result_.shaders.push_back({file, "area lights", shader.cost});
     entry["shaders"].push_back({{"file", file},
@@ -286,7 +296,8 @@ ExportedFiles ModelExport::run() && {
     add_shader(language);
     textures = textures || language != ShaderLanguage::cpp;
   }
-  if (textures) add_textures();
+  const bool dds = wants(ExportTarget::dds);
+  if (textures || dds) add_textures(textures, dds);
   if (textures && options_.mips) add_levels();
 
   if (options_.area) add_area_lights();
@@ -323,6 +334,19 @@ ExportedFiles ModelExport::run() && {
 
 }  // namespace
 
+void check_places_shown(const ExportOptions& options) {
+  const auto check = [&](const char* what, const std::optional<int>& number,
+                         bool (*has)(ExportTarget target) noexcept) {
+    if (number && std::ranges::none_of(options.to, has))
+      throw Error(fmt::format("export: expected {} with a {}, found others", targets_that(has), what));
+    if (number && options.environment)
+      throw Error(fmt::format("export: expected no environment with a {}, found one", what));
+  };
+  check("binding", options.places.binding, has_bindings);
+  check("set", options.places.set, has_sets);
+  check("space", options.places.space, has_spaces);
+}
+
 ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& options) {
   if (options.environment && std::ranges::none_of(options.to, shows_environment))
     throw Error(
@@ -333,6 +357,7 @@ ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& option
   if (options.half && std::ranges::none_of(options.to, has_half_products))
     throw Error(
         fmt::format("export: expected {} with half products, found others", targets_that(has_half_products)));
+  check_places_shown(options);
   return ModelExport(brdf, options).run();
 }
 

@@ -22,9 +22,16 @@ struct ExportOptions {
   bool area =
       false;       ///< shaders too of area lights, see lighting/area_light_shader.h; their fit takes seconds
   int cells = 90;  ///< of mdl: along each polar angle, in [2, 1000]; twice as many along the azimuth
+  /// Numbers of bindings, sets and spaces in shaders; each needs a target that has them.
+  ShaderPlaces places = {};
+  bool appended = false;     ///< shaders go behind others in a file: without `enable f16` of WGSL
+  std::string notes = "{}";  ///< of the model's file, JSON; its error figures go to the manifest
   /// Light from all around, for the targets of shows_environment.
   std::optional<Environment> environment = {};
 };
+
+/// Throws Error for places that no target has, and for places with an environment.
+void check_places_shown(const ExportOptions& options);
 
 /// Writes a factored BRDF as every target of `to`, each once; shaders but C++ bring their textures along. The target gltf
 /// has the nearest material of glTF, usda the nearest OpenPBR and core material, which take seconds to find. Throws Error
@@ -32,6 +39,7 @@ struct ExportOptions {
 /// - an environment that no target shows;
 /// - area lights without a language that has textures;
 /// - half without a language that has it, or with `exact`;
+/// - places that no target has, that are below 0, or with an environment, whose shaders have none;
 /// - glTF of other than 1 or 3 channels.
 ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& options);
 

@@ -1,12 +1,16 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
 #include <burnish/export/export_model.h>
 #include <burnish/export/export_openpbr.h>
 #include <burnish/export/export_specular.h>
+#include <burnish/export/manifest.h>
 #include <burnish/export/web.h>
 #include <burnish/file.h>
+#include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/io/mbsdf.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/testing/models.h>
@@ -101,6 +105,56 @@ TEST(ExportModel, BringsAreaLightsInEveryLanguageThatHasTextures) {
   EXPECT_THROW(export_model(small_model(), options), Error);
 }
 
+TEST(ExportModel, NamesTexturesAsTheirSamplersDo) {
+  const FactoredBrdf brdf = smooth_model(model_case("Volumes"));
+  const ExportedFiles exported = export_model(brdf, {.to = {ExportTarget::wgsl, ExportTarget::dds},
+                                                     .name = "paint",
+                                                     .notes = R"({"psnr": 41.5, "source": "a"})"});
+  const auto manifest = nlohmann::json::parse(exported.files.back().bytes);
+  ASSERT_EQ(manifest["textures"].size(), 2u);
+  for (const std::size_t i : {0u, 1u}) {
+    const std::string kind = i == 0 ? "tables" : "volumes";
+    const nlohmann::json& texture = manifest["textures"][i];
+    EXPECT_EQ(texture["sampler"], "burnish_paint_" + kind);
+    EXPECT_EQ(texture["file"], "paint." + kind + ".ktx2");
+    EXPECT_EQ(texture["dds"], "paint." + kind + ".dds");
+    EXPECT_EQ(texture["filter"], "linear");
+    EXPECT_TRUE(file_of(exported, texture["dds"]).starts_with("DDS "));
+    EXPECT_THAT(file_of(exported, "paint.wgsl"), HasSubstr("var burnish_paint_" + kind + ":"));
+  }
+  EXPECT_EQ(manifest["errors"], nlohmann::json({{"psnr", 41.5}, {"source", "a"}}));
+
+  const ExportedFiles alone = export_model(brdf, {.to = {ExportTarget::dds}, .name = "paint", .exact = true});
+  const auto other = nlohmann::json::parse(alone.files.back().bytes);
+  EXPECT_EQ(alone.files.size(), 3u);
+  EXPECT_EQ(other["textures"][0]["file"], "paint.tables.dds");
+  EXPECT_EQ(other["textures"][0]["filter"], "any");
+  EXPECT_FALSE(other.contains("errors"));
+}
+
+TEST(ExportModel, TellsTheDirectionOfTheCoreMaterialsAnisotropy) {
+  if (BURNISH_SANITIZED) GTEST_SKIP() << "looks for a material for seconds";
+  for (const bool across : {false, true}) {
+    const double narrow = 0.15, wide = 0.45;
+    const AnalyticBrdf brdf = parse_analytic(
+        fmt::format("ggx:alpha_x={},alpha_y={},f0=0.9", across ? narrow : wide, across ? wide : narrow));
+    const MetallicRoughnessFit core = fit_metallic_roughness(brdf);
+    const nlohmann::json entry = core_entry(core.material);
+    EXPECT_GT(entry["anisotropyStrength"].get<double>(), 0.2);
+    EXPECT_NEAR(entry["anisotropyRotation"].get<double>(), across ? 1.5707963 : 0, 1e-6);
+  }
+}
+
+TEST(ExportModel, RefusesPlacesThatNoTargetHas) {
+  const auto exports = [](ExportTarget to, const ShaderPlaces& places) {
+    return export_model(small_model(), {.to = {to}, .places = places});
+  };
+  EXPECT_THAT(file_of(exports(ExportTarget::glsl, {.set = 1}), "brdf.glsl"), HasSubstr("layout(set = 1"));
+  EXPECT_THROW(exports(ExportTarget::glsl_es, {.binding = 1}), Error);
+  EXPECT_THROW(exports(ExportTarget::hlsl, {.set = 1}), Error);
+  EXPECT_THROW(exports(ExportTarget::slang, {.space = 1}), Error);
+}
+
 TEST(ExportModel, RefusesAnEnvironmentThatNothingShows) {
   EXPECT_THROW(
       export_model(small_model(), {.to = {ExportTarget::ktx2}, .environment = find_environment("sun")}),
@@ -114,11 +168,9 @@ TEST(ExportModel, MultipliesInHalfPrecisionWhereAsked) {
     languages.push_back(export_target(to_string(language)));
   const ExportedFiles exported = export_model(brdf, {.to = languages, .name = "paint", .half = true}),
                       single = export_model(brdf, {.to = languages, .name = "paint"});
-  const std::pair<const char*, const char*> types[] = {{"paint.glsl", "mediump vec3"},
-                                                       {"paint.es.glsl", "mediump vec3"},
-                                                       {"paint.hlsl", "min16float3"},
-                                                       {"paint.metal", "half3"},
-                                                       {"paint.wgsl", "vec3h"}};
+  const std::pair<const char*, const char*> types[] = {
+      {"paint.glsl", "mediump vec3"}, {"paint.es.glsl", "mediump vec3"}, {"paint.hlsl", "min16float3"},
+      {"paint.metal", "half3"},       {"paint.slang", "half3"},          {"paint.wgsl", "vec3h"}};
   for (const auto& [file, type] : types) {
     EXPECT_THAT(file_of(exported, file), HasSubstr(type)) << file;
     EXPECT_THAT(file_of(single, file), Not(HasSubstr(type))) << file;

@@ -15,6 +15,7 @@
 #include <burnish/image/png.h>
 #include <burnish/shaders/cost_json.h>
 #include <burnish/shaders/spatial_shader.h>
+#include <burnish/textures/dds.h>
 #include <burnish/textures/image_files.h>
 #include <burnish/textures/ktx2.h>
 
@@ -45,7 +46,8 @@ LobeFiles lobe_files(const SpatialBrdf& surface, const ExportOptions& options) {
     return language_of(target).value_or(ShaderLanguage::cpp) != ShaderLanguage::cpp;
   });
   if (shaders || wants(ExportTarget::ktx2)) of_lobes.to.push_back(ExportTarget::ktx2);
-  for (const ExportTarget target : {ExportTarget::exr, ExportTarget::png})
+  of_lobes.places = {};
+  for (const ExportTarget target : {ExportTarget::dds, ExportTarget::exr, ExportTarget::png})
     if (wants(target)) of_lobes.to.push_back(target);
   ExportedFiles exported = export_model(surface.lobes(), of_lobes);
   LobeFiles lobes{.files = std::move(exported.files), .manifest = {}};
@@ -107,9 +109,12 @@ class SurfaceExport {
   void add_shader(ShaderLanguage language) {
     const bool cpp = language == ShaderLanguage::cpp;
     const ShaderFilter filter = options_.exact || cpp ? ShaderFilter::exact : ShaderFilter::hardware;
-    const SpatialShader shader = generate_shader(
-        surface_,
-        {.language = language, .filter = filter, .name = options_.name, .maps_in_blocks = options_.blocks});
+    const SpatialShader shader = generate_shader(surface_, {.language = language,
+                                                            .filter = filter,
+                                                            .name = options_.name,
+                                                            .maps_in_blocks = options_.blocks,
+                                                            .places = options_.places,
+                                                            .appended = options_.appended});
     const std::string file = shader_file(language, options_.name),
                       filter_name = filter == ShaderFilter::exact ? "exact" : "hardware";
     json textures = json::array();
@@ -135,16 +140,21 @@ class SurfaceExport {
     for (std::size_t i = 0; i < maps_.textures.size(); ++i) {
       const MapTexture& texture = maps_.textures[i];
       const bool in_blocks = texture.blocks != TexelBlocks::none;
-      const std::string file = fmt::format("{}_map{}.ktx2", options_.name, i);
-      result_.files.push_back({file, encode_ktx2(StoredTexels{.format = texture.format,
-                                                              .blocks = texture.blocks,
-                                                              .width = texture.width,
-                                                              .height = texture.height,
-                                                              .levels = texture.levels},
-                                                 options_.compressed)});
+      const StoredTexels texels{.format = texture.format,
+                                .blocks = texture.blocks,
+                                .width = texture.width,
+                                .height = texture.height,
+                                .levels = texture.levels};
+      const std::string as_ktx2 = fmt::format("{}_map{}.ktx2", options_.name, i),
+                        as_dds = fmt::format("{}_map{}.dds", options_.name, i);
+      const bool dds = wants(ExportTarget::dds), ktx2 = std::ranges::any_of(options_.to, [](ExportTarget to) {
+                                                   return to != ExportTarget::dds && has_map_textures(to);
+                                                 });
+      if (ktx2) result_.files.push_back({as_ktx2, encode_ktx2(texels, options_.compressed)});
+      if (dds) result_.files.push_back({as_dds, encode_dds(texels)});
       manifest_["maps"]["textures"].push_back(
           {{"sampler", texture.name},
-           {"file", file},
+           {"file", ktx2 ? as_ktx2 : as_dds},
            {"width", texture.width},
            {"height", texture.height},
            {"levels", texture.levels.size()},
@@ -153,6 +163,7 @@ class SurfaceExport {
            {"wrap", "repeat"},
            {"filter", "linear, linear between levels"}});
       if (in_blocks) manifest_["maps"]["textures"].back()["block_rms"] = texture.block_rms;
+      if (ktx2 && dds) manifest_["maps"]["textures"].back()["dds"] = as_dds;
     }
   }
 
@@ -164,7 +175,7 @@ class SurfaceExport {
     if (target == ExportTarget::exr) {
       bytes = encode_exr(image, TableFormat::single);
     } else if (vectors) {
-      bytes = encode_png(vector_bytes(image));
+      bytes = encode_png(vector_bytes(image), PngValues::linear);
     } else {
       float most = map.scale();
       if (map.format() == TableFormat::half) most = std::max(*std::ranges::max_element(image.pixels), 1e-30f);
@@ -172,7 +183,7 @@ class SurfaceExport {
       for (std::size_t i = 0; i < shown.pixels.size(); ++i)
         shown.pixels[i] =
             static_cast<std::uint8_t>(std::lround(255 * std::clamp(image.pixels[i] / most, 0.0f, 1.0f)));
-      bytes = encode_png(shown);
+      bytes = encode_png(shown, PngValues::linear);
     }
     const std::string file = fmt::format("{}_{}.{}", options_.name, name, to_string(target));
     manifest_["map_images"].push_back({{"map", name}, {"file", file}});
@@ -207,14 +218,14 @@ class SurfaceExport {
 }  // namespace
 
 bool has_map_textures(ExportTarget target) noexcept {
-  return target == ExportTarget::ktx2 ||
+  return target == ExportTarget::ktx2 || target == ExportTarget::dds ||
          language_of(target).value_or(ShaderLanguage::cpp) != ShaderLanguage::cpp;
 }
 
 bool takes_surfaces(ExportTarget target) noexcept {
   using enum ExportTarget;
-  return language_of(target) || target == ktx2 || target == exr || target == png || target == three ||
-         target == html || target == gltf;
+  return language_of(target) || target == ktx2 || target == dds || target == exr || target == png ||
+         target == three || target == html || target == gltf;
 }
 
 ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& options) {
@@ -223,12 +234,14 @@ ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& op
   if (options.half)
     throw Error("export: expected a model that is the same everywhere with half products, found a surface");
   if (options.blocks && std::ranges::none_of(options.to, has_map_textures))
-    throw Error("blocks: expected ktx2 or a shader language to export, found others");
+    throw Error("blocks: expected ktx2, dds or a shader language to export, found others");
+  check_places_shown(options);
   for (const ExportTarget target : options.to)
     if (!takes_surfaces(target))
-      throw Error(fmt::format(
-          "export: expected ktx2, exr, png, gltf, three, html or a shader language of a surface, found {}",
-          to_string(target)));
+      throw Error(
+          fmt::format("export: expected ktx2, dds, exr, png, gltf, three, html or a shader language of a "
+                      "surface, found {}",
+                      to_string(target)));
   return SurfaceExport(surface, options).run();
 }
 

@@ -5,10 +5,10 @@
 
 namespace burnish {
 
-/// Returns true if a surface can be written as the target: shaders, ktx2, exr, png, gltf, three and html.
+/// Returns true if a surface can be written as the target: shaders, ktx2, dds, exr, png, gltf, three and html.
 bool takes_surfaces(ExportTarget target) noexcept;
 
-/// Returns true if a surface has its maps as textures beside the target's file: shaders except C++, and ktx2.
+/// Returns true if a surface has its maps as textures beside the target's file: shaders except C++, ktx2 and dds.
 bool has_map_textures(ExportTarget target) noexcept;
 
 /// A surface: shaders (shaders/spatial_shader.h) with the lobes' textures and NAME_map0.ktx2, ...: the maps side by

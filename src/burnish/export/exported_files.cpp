@@ -13,9 +13,9 @@ namespace burnish {
 
 namespace {
 
-constexpr std::array<std::string_view, 18> kNames{"ktx2", "cube",    "exr",   "png",     "gltf", "materialx",
-                                                  "usda", "mdl",     "three", "babylon", "rgl",  "html",
-                                                  "glsl", "glsl_es", "hlsl",  "msl",     "wgsl", "cpp"};
+constexpr std::array<std::string_view, 20> kNames{
+    "ktx2",    "dds", "cube", "exr",  "png",     "gltf", "materialx", "usda",  "mdl",  "three",
+    "babylon", "rgl", "html", "glsl", "glsl_es", "hlsl", "msl",       "slang", "wgsl", "cpp"};
 constexpr auto kFirstLanguage = static_cast<std::size_t>(ExportTarget::glsl);
 static_assert(kFirstLanguage + kShaderLanguages.size() == kNames.size());
 
@@ -56,6 +56,18 @@ std::string export_name(std::string_view text) {
 
 bool has_half_products(ExportTarget target) noexcept {
   return language_of(target) && target != ExportTarget::cpp;
+}
+
+bool has_sets(ExportTarget target) noexcept {
+  return target == ExportTarget::glsl || target == ExportTarget::slang || target == ExportTarget::wgsl;
+}
+
+bool has_spaces(ExportTarget target) noexcept {
+  return target == ExportTarget::hlsl;
+}
+
+bool has_bindings(ExportTarget target) noexcept {
+  return has_sets(target) || has_spaces(target);
 }
 
 bool shows_environment(ExportTarget target) noexcept {

@@ -15,6 +15,7 @@ namespace burnish {
 /// The targets that a model can be written as.
 enum class ExportTarget {
   ktx2,       ///< the textures that shaders read
+  dds,        ///< the same as DDS
   cube,       ///< tables of one direction as cube maps, KTX2
   exr,        ///< a table an OpenEXR image
   png,        ///< a table a PNG image
@@ -31,6 +32,7 @@ enum class ExportTarget {
   glsl_es,
   hlsl,
   msl,
+  slang,
   wgsl,
   cpp,
 };
@@ -45,6 +47,12 @@ ExportTarget export_target(std::string_view name);
 std::optional<ShaderLanguage> language_of(ExportTarget target) noexcept;
 /// Returns true if the target is a language that can multiply in half precision: all but C++.
 bool has_half_products(ExportTarget target) noexcept;
+/// Returns true if the target has numbers of bindings or registers: glsl, hlsl, slang and wgsl.
+bool has_bindings(ExportTarget target) noexcept;
+/// Returns true if the target has sets or groups: glsl, slang and wgsl.
+bool has_sets(ExportTarget target) noexcept;
+/// Returns true if the target has register spaces: hlsl.
+bool has_spaces(ExportTarget target) noexcept;
 /// Returns true if the target can show light from all around: glsl, glsl_es and html.
 bool shows_environment(ExportTarget target) noexcept;
 

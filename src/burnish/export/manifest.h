@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -17,6 +18,11 @@ namespace burnish {
 /// "NAME.glsl" and the like.
 std::string shader_file(ShaderLanguage language, const std::string& name);
 
+/// Returns the name of a texture in files and MaterialX's inputs: "volumes" of a 3-D one, else "tables".
+std::string_view kind_of(const ShaderTexture& texture) noexcept;
+/// "NAME.tables.ktx2" and the like.
+std::string texture_file(const ShaderTexture& texture, const std::string& name, std::string_view ending);
+
 nlohmann::json manifest_entry(ShaderLanguage language, const std::string& name, const Shader& shader);
 nlohmann::json manifest_entry(const std::string& file, const Texture& texture);
 /// Which table, and how its positions are warped.
@@ -27,7 +33,11 @@ nlohmann::json manifest_entry(const std::string& file, const GlTexture& texture)
 /// Returns the entry for glTF: the material without its name, and its score.
 nlohmann::json gltf_entry(const NearestGltf& nearest);
 
-/// A core material as glTF has it.
+/// The error figures among the notes of a model's file, a JSON object, and what they compare with; null where there are
+/// none.
+nlohmann::json errors_entry(const std::string& notes);
+
+/// A core material as glTF has it; the direction of anisotropy is that of KHR_materials_anisotropy, in radians.
 nlohmann::json core_entry(const MetallicRoughness& material);
 
 /// NAME.json.

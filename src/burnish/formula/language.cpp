@@ -102,6 +102,9 @@ Language c_like(std::string_view name, std::string_view suffix) {
           .texture_3d = {},
           .filtered_texture = {},
           .filtered_texture_3d = {},
+          .unbound = {},
+          .bound = {},
+          .placed = {},
           .half_scalar = {},
           .half_vector = {},
           .half_constructor = {},
@@ -180,10 +183,12 @@ Language glsl() {
   l.sample = "textureLod({0}, vec2({1}, {2}), 0.0).{3}";
   l.sample_3d = "textureLod({0}, vec3({1}, {2}, {3}), 0.0).{4}";
   l.sample_1d = "textureLod({0}, {1}, 0.0).{2}";
-  l.texture_1d = "uniform sampler1D {0};\n";
+  l.bound = "layout(binding = {1}) ";
+  l.placed = "layout(set = {0}, binding = {1}) ";
+  l.texture_1d = "{4}uniform sampler1D {0};\n";
   l.array = "const float {0}[{1}] = float[]({2});\n";
-  l.texture = l.filtered_texture = "uniform sampler2D {0};\n";
-  l.texture_3d = l.filtered_texture_3d = "uniform sampler3D {0};\n";
+  l.texture = l.filtered_texture = "{4}uniform sampler2D {0};\n";
+  l.texture_3d = l.filtered_texture_3d = "{4}uniform sampler3D {0};\n";
   l.half_scalar = "mediump float";
   l.half_vector = "mediump vec3";
   l.half_constructor = "vec3";
@@ -192,17 +197,15 @@ Language glsl() {
   return l;
 }
 
-// GLSL ES 3.00: GLSL with declared precisions, without 1-D textures, and with exp2 in place of ldexp.
+// GLSL ES 3.00: GLSL with declared precisions, without 1-D textures and bindings, and with exp2 in place of ldexp.
+// Samplers have their own precision, so that the user's samplers keep theirs.
 Language glsl_es() {
   Language l = glsl();
   l.name = "glsl_es";
-  l.sample_1d = l.texture_1d = {};
-  l.header =
-      "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp "
-      "sampler3D;\n";
-  l.half_header =
-      "precision highp float;\nprecision highp int;\nprecision mediump sampler2D;\nprecision mediump "
-      "sampler3D;\n";
+  l.sample_1d = l.texture_1d = l.bound = l.placed = {};
+  l.header = l.half_header = "precision highp float;\nprecision highp int;\n";
+  l.texture = l.filtered_texture = "uniform {6} sampler2D {0};\n";
+  l.texture_3d = l.filtered_texture_3d = "uniform {6} sampler3D {0};\n";
   l.calls = with(kShaderMath, {{Op::scale_by_two, {"{0} * exp2({1})", 2}}});
   return l;
 }
@@ -223,14 +226,30 @@ Language hlsl() {
   l.texel_3d = "{0}.Load(int4({1}, {2}, {3}, 0)).{4}";
   l.sample = "{0}.SampleLevel({0}_sampler, float2({1}, {2}), 0.0).{3}";
   l.sample_3d = "{0}.SampleLevel({0}_sampler, float3({1}, {2}, {3}), 0.0).{4}";
-  l.texture = "Texture2D<float4> {0} : register(t{1});\n";
-  l.texture_3d = "Texture3D<float4> {0} : register(t{1});\n";
+  l.texture = "Texture2D<float4> {0} : register(t{1}{4});\n";
+  l.texture_3d = "Texture3D<float4> {0} : register(t{1}{4});\n";
   l.filtered_texture =
-      "Texture2D<float4> {0} : register(t{1});\nSamplerState {0}_sampler : register(s{1});\n";
+      "Texture2D<float4> {0} : register(t{1}{4});\nSamplerState {0}_sampler : register(s{1}{4});\n";
   l.filtered_texture_3d =
-      "Texture3D<float4> {0} : register(t{1});\nSamplerState {0}_sampler : register(s{1});\n";
+      "Texture3D<float4> {0} : register(t{1}{4});\nSamplerState {0}_sampler : register(s{1}{4});\n";
+  l.placed = ", space{0}";
   l.map_read = "  float4 {0} = {1}.SampleLevel({1}_sampler, float2(u, v), lod);\n";
   l.made = "  {0} place = {{ {1} }};\n  return place;\n";
+  return l;
+}
+
+// Slang: HLSL whose compiler gives textures their places unless told, and whose halves every target has.
+Language slang() {
+  Language l = hlsl();
+  l.name = "slang";
+  l.half_scalar = l.half_from_scalar = "half";
+  l.half_vector = l.half_constructor = l.half_from_vector = "half3";
+  l.bound = "[[vk::binding({2})]] ";
+  l.placed = "[[vk::binding({2}, {0})]] ";
+  l.texture = "{4}Texture2D<float4> {0};\n";
+  l.texture_3d = "{4}Texture3D<float4> {0};\n";
+  l.filtered_texture = "{4}Texture2D<float4> {0};\n{5}SamplerState {0}_sampler;\n";
+  l.filtered_texture_3d = "{4}Texture3D<float4> {0};\n{5}SamplerState {0}_sampler;\n";
   return l;
 }
 
@@ -304,13 +323,15 @@ Language wgsl() {
   l.texel_3d = "textureLoad({0}, vec3i({1}, {2}, {3}), 0).{4}";
   l.sample = "textureSampleLevel({0}, {0}_sampler, vec2f({1}, {2}), 0.0).{3}";
   l.sample_3d = "textureSampleLevel({0}, {0}_sampler, vec3f({1}, {2}, {3}), 0.0).{4}";
-  l.texture = "@group(0) @binding({1}) var {0}: texture_2d<f32>;\n";
-  l.texture_3d = "@group(0) @binding({1}) var {0}: texture_3d<f32>;\n";
+  l.unbound = l.bound = "0";
+  l.placed = "{0}";
+  l.texture = "@group({4}) @binding({1}) var {0}: texture_2d<f32>;\n";
+  l.texture_3d = "@group({4}) @binding({1}) var {0}: texture_3d<f32>;\n";
   l.filtered_texture =
-      "@group(0) @binding({2}) var {0}: texture_2d<f32>;\n@group(0) @binding({3}) var {0}_sampler: "
+      "@group({4}) @binding({2}) var {0}: texture_2d<f32>;\n@group({4}) @binding({3}) var {0}_sampler: "
       "sampler;\n";
   l.filtered_texture_3d =
-      "@group(0) @binding({2}) var {0}: texture_3d<f32>;\n@group(0) @binding({3}) var {0}_sampler: "
+      "@group({4}) @binding({2}) var {0}: texture_3d<f32>;\n@group({4}) @binding({3}) var {0}_sampler: "
       "sampler;\n";
   l.map_read = "  let {0} = textureSampleLevel({1}, {1}_sampler, vec2f(u, v), lod);\n";
   l.member = "  {1}: {0},\n";
@@ -333,7 +354,8 @@ std::string read_at(std::string_view of_two, std::string_view of_three, std::str
 }  // namespace
 
 std::span<const Language> languages() {
-  static const Language kAll[] = {c(), cuda(), cpp(), glsl(), glsl_es(), hlsl(), msl(), rust(), wgsl()};
+  static const Language kAll[] = {c(),    cuda(), cpp(),  glsl(),  glsl_es(),
+                                  hlsl(), msl(),  rust(), slang(), wgsl()};
   return kAll;
 }
 

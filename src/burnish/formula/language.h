@@ -33,8 +33,12 @@ struct Language {
   std::string_view sample, sample_3d;  // likewise at texture coordinates
   std::string_view sample_1d;          // {0} texture, {1} u, {2} channels' letters; empty: none
   std::string_view array;              // constant floats: {0} name, {1} how many, {2} values
-  // declarations: {0} name, {1} number, {2} twice it, {3} and one; empty: none
+  // declarations: {0} name, {1} number, {2} twice it, {3} and one, {4} place of the texture, {5} place of its
+  // sampler, {6} precision of its texels; empty: none
   std::string_view texture_1d, texture, texture_3d, filtered_texture, filtered_texture_3d;
+  // places in declarations: {0} set, {1} number, {2} number where samplers have numbers too. `bound` where only a
+  // number was asked for, `placed` where a set was.
+  std::string_view unbound, bound, placed;
   // products of texels in half precision: its types, what makes a vector, what converts from single (empty:
   // nothing has to), suffix of literals, and what stands instead of `header`
   std::string_view half_scalar, half_vector, half_constructor, half_from_scalar, half_from_vector,
@@ -66,7 +70,7 @@ struct Language {
 };
 
 /// c, cuda, cpp (C++ that CUDA compiles too, with a vector type of its own), glsl, glsl_es (3.00), hlsl, msl,
-/// rust and wgsl.
+/// rust, slang and wgsl.
 std::span<const Language> languages();
 /// Throws Error naming those known.
 const Language& language(std::string_view name);

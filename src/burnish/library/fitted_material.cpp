@@ -146,6 +146,7 @@ FittedMaterial fit_material(const LibraryEntry& entry, const std::string& key, c
   if (!options.exports.to.empty()) {
     ExportOptions exports = options.exports;
     exports.name = export_name(entry.name);
+    exports.notes = to_json(fit.report);
     for (ExportedFile& file : export_model(fit.model(), exports).files)
       add(fmt::format("exports/{}/{}", entry.name, file.name), std::move(file.bytes));
   }

@@ -18,9 +18,10 @@ struct AreaLightShader {
 ///   towards wo, unit; corners in order, relative to the point that is lit, all of the local frame;
 /// - `burnish_NAME_quad_world(n, t, v, p0, p1, p2, p3)`: the same in any frame, with corners relative to the point too.
 /// Within 1e-4 of the table's albedo, and of its texture's rounding to half precision. The texture takes binding 8 in
-/// HLSL (t8) and its pair in WGSL, so that it stands beside those of generate_shader. Throws Error for cpp, which has no
-/// textures, and for a name that is none of generate_shader's.
-AreaLightShader generate_shader(const AreaLightTable& table, ShaderLanguage language,
-                                const std::string& name);
+/// HLSL (t8) and its pair in WGSL, so that it stands beside those of generate_shader; with `places`, the 8 is counted
+/// from the binding there. Throws Error for cpp, which has no textures, for a name that is none of generate_shader's,
+/// and for places below 0.
+AreaLightShader generate_shader(const AreaLightTable& table, ShaderLanguage language, const std::string& name,
+                                const ShaderPlaces& places = {});
 
 }  // namespace burnish

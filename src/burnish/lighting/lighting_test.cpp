@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
@@ -250,7 +251,7 @@ constexpr const char* kCalls =
 
 // What makes a program of the functions.
 std::string main_of(ShaderLanguage language) {
-  if (language == ShaderLanguage::hlsl)
+  if (language == ShaderLanguage::hlsl || language == ShaderLanguage::slang)
     return fmt::format(
         "float4 main(float4 at : SV_Position) : SV_Target {{ float3 a = at.xyz; return float4({}; }}\n",
         kCalls);
@@ -286,6 +287,18 @@ TEST(AreaLightShader, CompilesInEveryLanguageWithACompiler) {
 TEST(AreaLightShader, NeedsTexturesAndAName) {
   EXPECT_THROW(generate_shader(made_table(AreaLightViews::line), ShaderLanguage::cpp, "test"), Error);
   EXPECT_THROW(generate_shader(made_table(AreaLightViews::line), ShaderLanguage::glsl, "a b"), Error);
+}
+
+TEST(AreaLightShader, CountsItsPlaceFromTheBindingThatIsAskedFor) {
+  const auto text = [](ShaderLanguage language, const ShaderPlaces& places) {
+    return generate_shader(made_table(AreaLightViews::line), language, "test", places).text;
+  };
+  using ::testing::HasSubstr;
+  EXPECT_THAT(text(ShaderLanguage::glsl, {.binding = 2, .set = 1}),
+              HasSubstr("layout(set = 1, binding = 10) uniform sampler2D burnish_test_area;"));
+  EXPECT_THAT(text(ShaderLanguage::wgsl, {.binding = 2, .set = 1}),
+              HasSubstr("@group(1) @binding(18) var burnish_test_area: texture_2d<f32>;"));
+  EXPECT_THROW(text(ShaderLanguage::glsl, {.binding = -1}), Error);
 }
 
 TEST(AreaLightShader, ComputesWhatTheTableSays) {

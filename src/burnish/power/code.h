@@ -9,7 +9,8 @@
 
 namespace burnish {
 
-/// Languages code can be written in: "c", "cuda", "glsl", "glsl_es" (3.00), "hlsl", "msl", "rust", "wgsl".
+/// Languages code can be written in: "c", "cuda", "glsl", "glsl_es" (3.00), "hlsl", "msl", "rust",
+/// "slang", "wgsl".
 std::vector<std::string_view> code_languages();
 
 struct CodeOptions {

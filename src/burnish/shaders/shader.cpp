@@ -11,6 +11,7 @@
 #include <burnish/shaders/frame_function.h>
 #include <burnish/shaders/half_range.h>
 #include <burnish/shaders/shader_formula.h>
+#include <burnish/shaders/texture_declaration.h>
 #include <burnish/shaders/texture_packing.h>
 
 namespace burnish {
@@ -208,7 +209,7 @@ std::string declare_textures(const Language& l, const ShaderOptions& options,
                                      : filtered          ? l.filtered_texture
                                                          : l.texture;
     text += l.texture.empty() ? declare_array(l, texture)
-                              : fmt::format(fmt::runtime(pattern), texture.name, i, 2 * i, 2 * i + 1);
+                              : declared_texture(l, pattern, texture.name, i, options);
   }
   if (l.texture_struct.empty()) return text;
   return fmt::format(fmt::runtime(l.texture_struct), "burnish_" + options.name + "_tables", text);
@@ -272,7 +273,7 @@ LocalFunction local_function(Expr total, const Language& l, const ShaderOptions&
 }
 
 std::string_view header_of(const Language& l, const ShaderOptions& options) noexcept {
-  return options.half_products ? l.half_header : l.header;
+  return options.half_products && !options.appended ? l.half_header : l.header;
 }
 
 void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
@@ -287,6 +288,7 @@ void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
     throw Error("shader: expected glsl and the hardware filter with 1-D textures, found others");
   if (options.textures_are_arguments && (options.language != ShaderLanguage::glsl || options.lines_are_1d))
     throw Error("shader: expected glsl without 1-D textures where textures are arguments, found others");
+  check_places(options.places);
   if (options.half_products && options.filter == ShaderFilter::exact)
     throw Error("shader: expected the hardware filter with half products, found exact");
 }
@@ -294,7 +296,7 @@ void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
 }  // namespace
 
 std::string_view to_string(ShaderLanguage language) noexcept {
-  constexpr std::string_view kNames[] = {"glsl", "glsl_es", "hlsl", "msl", "wgsl", "cpp"};
+  constexpr std::string_view kNames[] = {"glsl", "glsl_es", "hlsl", "msl", "slang", "wgsl", "cpp"};
   return kNames[static_cast<std::size_t>(language)];
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,18 +12,29 @@
 
 namespace burnish {
 
-/// GLSL 4.50, GLSL ES 3.00 (WebGL2), HLSL (shader model 5), MSL, WGSL, and C++ that CUDA compiles too.
-enum class ShaderLanguage { glsl, glsl_es, hlsl, msl, wgsl, cpp };
+/// GLSL 4.50, GLSL ES 3.00 (WebGL2), HLSL (shader model 5), MSL, Slang, WGSL, and C++ that CUDA compiles too.
+enum class ShaderLanguage { glsl, glsl_es, hlsl, msl, slang, wgsl, cpp };
 
 /// The ways to interpolate tables:
 enum class ShaderFilter { exact, hardware };
 
-inline constexpr std::array kShaderLanguages{ShaderLanguage::glsl, ShaderLanguage::glsl_es,
-                                             ShaderLanguage::hlsl, ShaderLanguage::msl,
-                                             ShaderLanguage::wgsl, ShaderLanguage::cpp};
+inline constexpr std::array kShaderLanguages{
+    ShaderLanguage::glsl,  ShaderLanguage::glsl_es, ShaderLanguage::hlsl, ShaderLanguage::msl,
+    ShaderLanguage::slang, ShaderLanguage::wgsl,    ShaderLanguage::cpp};
 
-/// "glsl", "glsl_es", "hlsl", "msl", "wgsl" or "cpp".
+/// "glsl", "glsl_es", "hlsl", "msl", "slang", "wgsl" or "cpp".
 std::string_view to_string(ShaderLanguage language) noexcept;
+
+/// The numbers that declarations give to textures. None of them is written where nothing is set, but HLSL and WGSL
+/// count from 0 in group 0.
+struct ShaderPlaces {
+  std::optional<int>
+      binding;             ///< first one of glsl, slang and wgsl, first register of hlsl; >= 0, by default 0
+  std::optional<int> set;  ///< descriptor set of glsl (Vulkan's) and slang, group of wgsl; >= 0
+  std::optional<int> space;  ///< of the registers of hlsl; >= 0
+
+  friend bool operator==(const ShaderPlaces&, const ShaderPlaces&) = default;
+};
 
 struct ShaderOptions {
   ShaderLanguage language = ShaderLanguage::glsl;
@@ -39,6 +51,9 @@ struct ShaderOptions {
   bool textures_are_arguments = false;
   /// For a surface: its maps are pairs in blocks, see pack_maps.
   bool maps_in_blocks = false;
+  ShaderPlaces places = {};
+  /// The text is to stand behind other code in a file: it lacks what must come first there, `enable f16` of WGSL.
+  bool appended = false;
 };
 
 /// The cost of one evaluation in the local frame, above the horizon. Floating-point operations are counted for each

@@ -356,6 +356,95 @@ TEST(HalfProducts, TakeTheHardwareFilter) {
   EXPECT_THROW(generate_shader(brdf, {.half_products = true}), Error);
 }
 
+// The lines of a text that have a word.
+std::vector<std::string> lines_with(const std::string& text, std::string_view word) {
+  std::vector<std::string> found;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find(word) != line.npos) found.push_back(line);
+  return found;
+}
+
+TEST(ShaderPlaces, AreWrittenWhereTheyAreAskedFor) {
+  const FactoredBrdf brdf = smooth_model(model_case("Volumes"));
+  const auto text = [&](ShaderLanguage language, const ShaderPlaces& places) {
+    return generate_shader(
+               brdf, {.language = language, .filter = ShaderFilter::hardware, .name = "m", .places = places})
+        .text;
+  };
+  using ::testing::ElementsAre;
+  EXPECT_THAT(lines_with(text(ShaderLanguage::glsl, {}), "uniform "),
+              ElementsAre("uniform sampler2D burnish_m_tables;", "uniform sampler3D burnish_m_volumes;"));
+  EXPECT_THAT(lines_with(text(ShaderLanguage::glsl, {.binding = 3}), "uniform "),
+              ElementsAre("layout(binding = 3) uniform sampler2D burnish_m_tables;",
+                          "layout(binding = 4) uniform sampler3D burnish_m_volumes;"));
+  EXPECT_THAT(lines_with(text(ShaderLanguage::glsl, {.set = 2}), "uniform "),
+              ElementsAre("layout(set = 2, binding = 0) uniform sampler2D burnish_m_tables;",
+                          "layout(set = 2, binding = 1) uniform sampler3D burnish_m_volumes;"));
+  EXPECT_THAT(lines_with(text(ShaderLanguage::hlsl, {.binding = 3, .space = 1}), "register"),
+              ElementsAre("Texture2D<float4> burnish_m_tables : register(t3, space1);",
+                          "SamplerState burnish_m_tables_sampler : register(s3, space1);",
+                          "Texture3D<float4> burnish_m_volumes : register(t4, space1);",
+                          "SamplerState burnish_m_volumes_sampler : register(s4, space1);"));
+  EXPECT_THAT(lines_with(text(ShaderLanguage::wgsl, {.binding = 3, .set = 1}), "@group"),
+              ElementsAre("@group(1) @binding(3) var burnish_m_tables: texture_2d<f32>;",
+                          "@group(1) @binding(4) var burnish_m_tables_sampler: sampler;",
+                          "@group(1) @binding(5) var burnish_m_volumes: texture_3d<f32>;",
+                          "@group(1) @binding(6) var burnish_m_volumes_sampler: sampler;"));
+  EXPECT_THAT(lines_with(text(ShaderLanguage::slang, {.binding = 3, .set = 1}), "binding"),
+              ElementsAre("[[vk::binding(3, 1)]] Texture2D<float4> burnish_m_tables;",
+                          "[[vk::binding(4, 1)]] SamplerState burnish_m_tables_sampler;",
+                          "[[vk::binding(5, 1)]] Texture3D<float4> burnish_m_volumes;",
+                          "[[vk::binding(6, 1)]] SamplerState burnish_m_volumes_sampler;"));
+  for (const ShaderLanguage language : {ShaderLanguage::glsl_es, ShaderLanguage::msl})
+    EXPECT_EQ(text(language, {.binding = 3, .set = 1, .space = 2}), text(language, {}));
+  for (const ShaderPlaces& places :
+       {ShaderPlaces{.binding = -1}, ShaderPlaces{.set = -1}, ShaderPlaces{.space = -1}})
+    EXPECT_THROW(text(ShaderLanguage::glsl, places), Error);
+}
+
+// Two materials whose files are joined as a user joins them: a line for the compiler, one file, another.
+TEST(ShaderPlaces, PutSeveralMaterialsIntoOneModule) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  int compiled = 0;
+  for (const Checked& checked : kChecked) {
+    if (!has_tool(checked.tool)) continue;
+    const TemporaryFolder folder("module");
+    std::string text = checked.before;
+    for (const int number : {0, 1}) {
+      const ShaderOptions options{.language = checked.language,
+                                  .filter = ShaderFilter::hardware,
+                                  .name = number == 0 ? "one" : "two",
+                                  .half_products = true,
+                                  .places = {.binding = 4 * number},
+                                  .appended = number == 1};
+      text += generate_shader(smooth_model(model_case("Volumes")), options).text;
+    }
+    text += fmt::format(fmt::runtime(checked.main), "two");
+    const fs::path file = folder.path / fmt::format("module.{}", checked.extension);
+    write(file, text);
+    EXPECT_TRUE(runs(fmt::format(fmt::runtime(checked.command), " " + file.string()), folder.path / "log"));
+    EXPECT_LE(lines_with(text, "enable ").size(), 1u);
+    ++compiled;
+  }
+  if (compiled == 0) GTEST_SKIP() << "no compiler of shaders";
+}
+
+TEST(Shader, LeavesThePrecisionOfOtherSamplersAlone) {
+  const FactoredBrdf brdf = smooth_model(model_case("Volumes"));
+  for (const bool half : {false, true}) {
+    const std::string text = generate_shader(brdf, {.language = ShaderLanguage::glsl_es,
+                                                    .filter = ShaderFilter::hardware,
+                                                    .name = "m",
+                                                    .half_products = half})
+                                 .text;
+    EXPECT_THAT(lines_with(text, "precision "),
+                ::testing::ElementsAre("precision highp float;", "precision highp int;"));
+    EXPECT_THAT(text, HasSubstr(half ? "uniform mediump sampler3D burnish_m_volumes;"
+                                     : "uniform highp sampler3D burnish_m_volumes;"));
+  }
+}
+
 TEST(Shader, SaysWhatNoCompilerHasChecked) {
   EXPECT_THAT(shader_of(kModelCases[0], ShaderLanguage::msl).text, HasSubstr("No compiler has checked"));
 }

@@ -9,6 +9,7 @@
 #include <burnish/shaders/frame_function.h>
 #include <burnish/shaders/shader_formula.h>
 #include <burnish/shaders/spatial_shader.h>
+#include <burnish/shaders/texture_declaration.h>
 
 namespace burnish {
 
@@ -74,15 +75,15 @@ struct PlaceText {
   ShaderCost cost;
 };
 
-PlaceText place_text(const Language& l, const std::string& name, const SpatialBrdf& surface,
+PlaceText place_text(const Language& l, const ShaderOptions& options, const SpatialBrdf& surface,
                      const PackedMaps& maps, std::size_t first_number) {
+  const std::string& name = options.name;
   const std::string structure = fmt::format("burnish_{}_place", name),
                     gathered = fmt::format("burnish_{}_maps", name);
   // textures
   std::string declarations;
   for (std::size_t i = 0; i < maps.textures.size() && !l.filtered_texture.empty(); ++i)
-    declarations += fmt::format(fmt::runtime(l.filtered_texture), maps.textures[i].name, first_number + i,
-                                2 * (first_number + i), 2 * (first_number + i) + 1);
+    declarations += declared_texture(l, l.filtered_texture, maps.textures[i].name, first_number + i, options);
   PlaceText place;
   place.text = l.texture_struct.empty() ? declarations
                                         : fmt::format(fmt::runtime(l.texture_struct), gathered, declarations);
@@ -190,7 +191,7 @@ SpatialShader generate_shader(const SpatialBrdf& surface, const ShaderOptions& o
                        .place_cost = {},
                        .light_cost = {}};
   const FormulaSurroundings around = formula_surroundings(options, shader.textures);
-  const PlaceText place = place_text(l, options.name, surface, shader.maps, shader.textures.size());
+  const PlaceText place = place_text(l, options, surface, shader.maps, shader.textures.size());
   const bool framed = shader.maps.normals || shader.maps.tangents;
   const MoreParameters more = with_place(l, around.more, options.name);
   const FormulaFunction lobes = formula_function(
@@ -224,7 +225,7 @@ SplitSpatialShader split_shader(const SpatialBrdf& surface, const ShaderOptions&
                            .maps = pack_maps(surface, map_name(options), options.maps_in_blocks)};
   split.framed = split.maps.normals || split.maps.tangents;
   split.declarations = split.lobes.declarations +
-                       place_text(l, options.name, surface, split.maps, split.lobes.textures.size()).text +
+                       place_text(l, options, surface, split.maps, split.lobes.textures.size()).text +
                        lod_function(l, options.name, surface);
   split.place = fmt::format("  burnish_{0}_place place = burnish_{0}_at(u, v, lod);\n", options.name);
   return split;

@@ -177,6 +177,7 @@ std::string surface_main(ShaderLanguage language) {
   const std::string at = "burnish_wall_at(at.x, at.y, burnish_wall_lod(0.1, 0.0, 0.0, 0.1))";
   switch (language) {
     case ShaderLanguage::hlsl:
+    case ShaderLanguage::slang:
       return fmt::format(
           "float4 main(float4 at : SV_Position) : SV_Target {{ burnish_wall_place place = {}; return "
           "float4({}, "

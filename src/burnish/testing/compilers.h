@@ -69,6 +69,12 @@ inline const Checked kChecked[] = {
      "float4 main(float4 at : SV_Position) : SV_Target {{ return float4(burnish_{0}(at.xyz, at.xyz) + "
      "burnish_{0}_world(at.xyz, at.xyz, at.xyz, at.xyz), 1.0); }}\n",
      "for f in{}; do glslangValidator -D -e main -S frag -V -o /dev/null $f || exit 1; done"},
+    // The HLSL of glslang has all of what generated Slang uses; tests/shaders/compile.py has Slang's own compiler.
+    {ShaderLanguage::slang, "glslangValidator", "frag.hlsl", "",
+     "float4 main(float4 at : SV_Position) : SV_Target {{ return float4(burnish_{0}(at.xyz, at.xyz) + "
+     "burnish_{0}_world(at.xyz, at.xyz, at.xyz, at.xyz), 1.0); }}\n",
+     "for f in{}; do glslangValidator -D -e main -S frag -V --auto-map-bindings -o /dev/null $f || exit 1; "
+     "done"},
     {ShaderLanguage::wgsl, "naga", "wgsl", "",
      "@fragment fn main(@builtin(position) at: vec4f) -> @location(0) vec4f {{ return "
      "vec4f(burnish_{0}(at.xyz, "

@@ -108,16 +108,6 @@ std::string key_value(std::string_view key, std::string_view value) {
   return text;
 }
 
-std::string texel_data(const Texture& texture, const std::vector<float>& level) {
-  const bool alpha = texture.channels == 3 && texture.format != TableFormat::rgb9e5;
-  std::vector<float> values;
-  for (std::size_t i = 0; alpha && i < level.size(); i += 3)
-    values.insert(values.end(), {level[i], level[i + 1], level[i + 2], 1.0f});
-  const std::vector<std::byte> bytes =
-      pack(texture.format, alpha ? 4 : texture.channels, alpha ? values : level);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 std::string compress(const std::string& data) {
   std::string packed(ZSTD_compressBound(data.size()), '\0');
   const std::size_t size = ZSTD_compress(packed.data(), packed.size(), data.data(), data.size(), 19);
@@ -183,7 +173,7 @@ std::string encode_ktx2(const Texture& texture, bool compressed) {
   if (texture.channels != 1 && texture.channels != 3)
     throw Error(fmt::format("KTX2: expected a texture of 1 or 3 channels, found {}", texture.channels));
   std::vector<std::string> levels;
-  for (const std::vector<float>& level : texture.levels) levels.push_back(texel_data(texture, level));
+  for (const std::vector<float>& level : texture.levels) levels.push_back(level_bytes(texture, level));
   return encoded(texels_of(texture.format, texture.channels),
                  {texture.width, texture.height, texture.depth, texture.faces}, levels, compressed);
 }

@@ -250,4 +250,14 @@ Texture make_cube_map(const Table& table, int side, bool mips) {
   return texture;
 }
 
+std::string level_bytes(const Texture& texture, const std::vector<float>& level) {
+  const bool alpha = texture.channels == 3 && texture.format != TableFormat::rgb9e5;
+  std::vector<float> values;
+  for (std::size_t i = 0; alpha && i < level.size(); i += 3)
+    values.insert(values.end(), {level[i], level[i + 1], level[i + 2], 1.0f});
+  const std::vector<std::byte> bytes =
+      pack(texture.format, alpha ? 4 : texture.channels, alpha ? values : level);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 }  // namespace burnish

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include <burnish/factors/table.h>
@@ -30,6 +31,9 @@ Texture make_texture(const Table& table, bool mips);
 /// direction itself, no disk to be found. `mips` as above. Throws Error for a grid or volume, channels other than 1 or
 /// 3, or a side outside [2, 2048].
 Texture make_cube_map(const Table& table, int side, bool mips);
+
+/// A level's texels as files and GPUs hold them: three channels of halves, floats and bytes have an alpha of 1.
+std::string level_bytes(const Texture& texture, const std::vector<float>& level);
 
 /// The direction of a place in a face, x and y in [-1, 1] to the right and downwards as texels run.
 Vec3 cube_direction(int face, double x, double y) noexcept;

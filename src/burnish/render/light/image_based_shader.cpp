@@ -13,6 +13,7 @@
 #include <burnish/render/light/map_expression.h>
 #include <burnish/render/light/prefiltered_formula.h>
 #include <burnish/shaders/shader_formula.h>
+#include <burnish/shaders/texture_declaration.h>
 
 namespace burnish {
 
@@ -83,7 +84,8 @@ ImageBasedShader generate_shader(const ImageBasedLight& light, ShaderLanguage la
   for (const PrefilteredLobe& lobe : light.lobes) parts.push_back(lobe.outside);
   LobeFunctions factors = lobe_functions(
       joined(parts), {.language = language, .filter = ShaderFilter::hardware, .name = name + "_view"});
-  shader.text = factors.text + fmt::format(fmt::runtime(l.filtered_texture_3d), shader.maps);
+  shader.text =
+      factors.text + declared_texture(l, l.filtered_texture_3d, shader.maps, 0, {.language = language});
   shader.tables = std::move(factors.textures);
 
   // every lobe: the factors of the view times what its maps show

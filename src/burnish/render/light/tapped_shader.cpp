@@ -13,6 +13,7 @@
 #include <burnish/render/light/map_expression.h>
 #include <burnish/render/light/tapped_light.h>
 #include <burnish/shaders/shader_formula.h>
+#include <burnish/shaders/texture_declaration.h>
 #include <burnish/shaders/texture_packing.h>
 
 namespace burnish {
@@ -154,7 +155,8 @@ TappedShader generate_shader(const TappedBrdf& brdf, const BlurredEnvironment& e
   const bool declared_with_volumes = !around.tables.empty();
   shader.textures.insert(shader.textures.begin(), std::move(around));
   shader.text = factors.text;
-  if (!declared_with_volumes) shader.text += fmt::format(fmt::runtime(l.filtered_texture_3d), levels.name);
+  if (!declared_with_volumes)
+    shader.text += declared_texture(l, l.filtered_texture_3d, levels.name, 0, {.language = language});
   shader.text += blurred_function(l, shader.textures.front(), blur);
 
   // the view as all lobes have it, then each lobe's factors of the view times what its taps gather
