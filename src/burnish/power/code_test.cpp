@@ -90,7 +90,7 @@ TEST_P(EmittedShaders, AreAcceptedByTheirCompiler) {
       functions = fmt::format(
           "#version {}\nlayout(location = 0) out float color;\n{}void main() {{ color = 0.0{}; }}\n",
           std::string(language) == "glsl" ? "450" : "300 es\nprecision highp float;", functions, calls);
-    else if (std::string(language) == "hlsl")
+    else if (std::string(language) == "hlsl" || std::string(language) == "slang")
       functions += fmt::format("float4 main() : SV_Target {{ return 0.0{}; }}\n", calls);
     const fs::path file = folder.path / fmt::format("power{}.{}", constant, extension);
     write(file, functions);
@@ -105,6 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
         std::array{"glsl", "glslangValidator", "frag", "glslangValidator {0}"},
         std::array{"glsl_es", "glslangValidator", "frag", "glslangValidator {0}"},
         std::array{"hlsl", "glslangValidator", "frag", "glslangValidator -D -e main -V {0} -o {1}/out.spv"},
+        std::array{"slang", "glslangValidator", "frag", "glslangValidator -D -e main -V {0} -o {1}/out.spv"},
         std::array{"wgsl", "naga", "wgsl", "naga {0}"},
         std::array{"rust", "rustc", "rs", "rustc --crate-type lib --emit metadata --out-dir {1} {0}"}),
     [](const auto& shader) { return std::string(shader.param[0]); });

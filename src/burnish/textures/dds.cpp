@@ -1,6 +1,7 @@
-#include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <string_view>
+#include <initializer_list>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
