@@ -39,6 +39,32 @@ def test_materialx_finds_its_document_valid_and_makes_glsl_of_it(name, folders, 
         assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.parametrize("generator", ["VkShaderGenerator", "WgslShaderGenerator"])
+def test_materialx_makes_valid_vulkan_glsl_of_one_texture(generator, folders, tmp_path):
+    """Also as its generator for WGSL wants it, whose textures and samplers are apart."""
+    mx = pytest.importorskip("MaterialX")
+    from MaterialX import PyMaterialXGenGlsl, PyMaterialXGenShader
+
+    if not hasattr(PyMaterialXGenGlsl, generator) or not shutil.which("glslangValidator"):
+        pytest.skip(f"no {generator} or no glslangValidator")
+    library, document = mx.createDocument(), mx.createDocument()
+    mx.loadLibraries(mx.getDefaultDataLibraryFolders(), mx.getDefaultDataSearchPath(), library)
+    mx.readFromXmlFile(document, str(folders / "model" / "m.mtlx"))
+    document.importLibrary(library)
+    makes = getattr(PyMaterialXGenGlsl, generator).create()
+    context = PyMaterialXGenShader.GenContext(makes)
+    path = mx.FileSearchPath(mx.getDefaultDataSearchPath().asString())
+    path.append(mx.FilePath(str(folders / "model")))
+    context.registerSourceCodeSearchPath(path)
+    shader = makes.generate("m", document.getChild("m"), context)
+    text = shader.getSourceCode("pixel")
+    assert ("texture2D tex_texture, sampler tex_sampler, BSDF" in text) == generator.startswith("Wgsl")
+    (tmp_path / "m.frag").write_text(text)
+    words = ["glslangValidator", "-V", tmp_path / "m.frag", "-o", tmp_path / "m.spv"]
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
+
+
 @pytest.mark.parametrize("name", ["model", "volume", "openpbr", "turned"])
 def test_materialx_glsl_looks_as_in_our_renderer(name, folders, cli, llvm, request, tmp_path):
     moderngl = pytest.importorskip("moderngl")
