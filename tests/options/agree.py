@@ -73,14 +73,14 @@ process.exit(0);
 """
 
 
-def of_command_line(burnish, rows, options):
+def of_command_line(burnish, rows, options, folder):
     found = []
     for row in rows:
         words = []
         for name, value in row.items():
             for one in value if isinstance(value, list) else [value]:
                 words += [options[name]["command_line"]] + ([] if one is True else [str(one)])
-        done = subprocess.run([burnish, "fit", SOURCE, "-o", "unwritten.burnish", *words], capture_output=True, text=True)
+        done = subprocess.run([burnish, "fit", SOURCE, "-o", f"{folder}/model.burnish", *words], capture_output=True, text=True)
         found.append(done.stderr.splitlines()[0].removeprefix("burnish: ") if done.returncode == 2 else None)
     return found
 
@@ -111,7 +111,8 @@ def main():
     described = json.loads(subprocess.run([arguments.burnish, "describe", "--json"], capture_output=True, text=True, check=True).stdout)
     options = {option["python"]: option for option in described["fit_options"] if option["python"]}
 
-    said = {"command_line": of_command_line(arguments.burnish, WRONG, options)}
+    with tempfile.TemporaryDirectory() as folder:
+        said = {"command_line": of_command_line(arguments.burnish, WRONG, options, folder)}
     if subprocess.run([arguments.python, "-c", "import burnish"], capture_output=True, check=False).returncode == 0:
         said["python"] = of_program([arguments.python, "-c", PYTHON, SOURCE], WRONG)
     else:
