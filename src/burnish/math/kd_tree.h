@@ -20,6 +20,16 @@ inline double distance2(const TreePoint& a, const TreePoint& b) noexcept {
   return sum;
 }
 
+/// Returns the place with coordinates rounded to multiples of 2^-40. Directions that are the same but for rounding get one
+/// place, so ties are ties on every processor and under every standard library.
+/// Precondition: coordinates lie within [-1024, 1024].
+inline TreePoint on_grid(TreePoint place) noexcept {
+  // The sum's last bit is 2^-40, so the addition rounds to it.
+  constexpr double kShift = 1.5 * 4096;
+  for (double& x : place) x = (x + kShift) - kShift;
+  return place;
+}
+
 /// Points in an order that makes neighbours quick to find: a balanced k-d tree without pointers. The middle point of a
 /// range splits it along the longest side of its box; ranges of up to kLeaf points are searched one by one. The order
 /// depends on the points alone, not on the standard library: ties keep the order of the input.

@@ -132,17 +132,20 @@ DirectionPair directions_of(std::size_t corner) noexcept {
 
 TreePoint place_of(Vec3 wi, Vec3 wo, bool isotropic) noexcept {
   const HalfDiff angles = to_half_diff(wi, wo);
-  const double half = std::sqrt(std::tan(angles.theta_h / 2)), difference = std::tan(angles.theta_d / 2);
+  // The square root would make rounding at the normal large.
+  const bool upright = angles.theta_h < kUpright;
+  const double half = upright ? 0 : std::sqrt(std::tan(angles.theta_h / 2));
+  const double difference = std::tan(angles.theta_d / 2);
   if (isotropic) {
     // Exchange and reflection fold phi_d to [0, pi/2]. Where h is the normal, phi_d is not defined.
-    const double phi_d = angles.theta_h < kUpright ? 0 : std::abs(std::remainder(angles.phi_d, kPi));
-    return {half, difference, std::sin(angles.theta_d) * phi_d / kHalfPi, 0};
+    const double phi_d = upright ? 0 : std::abs(std::remainder(angles.phi_d, kPi));
+    return on_grid({half, difference, std::sin(angles.theta_d) * phi_d / kHalfPi, 0});
   }
   // Only the sum of the azimuths is defined if h is the normal. Doubling it makes the coordinates even in the
   // exchange.
   const double turn = 2 * (angles.phi_h + angles.phi_d);
-  return {half * std::cos(angles.phi_h), half * std::sin(angles.phi_h), difference * std::cos(turn),
-          difference * std::sin(turn)};
+  return on_grid({half * std::cos(angles.phi_h), half * std::sin(angles.phi_h), difference * std::cos(turn),
+                  difference * std::sin(turn)});
 }
 
 KrigedNodes::KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covariance, bool few_pairs)

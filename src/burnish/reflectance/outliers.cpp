@@ -35,9 +35,12 @@ class Surprises {
     for (std::size_t i = 0; i < others_.size(); ++i) {
       const DirectionPair& pair = nodes.samples.pairs[others_.number(i)];
       const std::span<const double> f = nodes.samples.at(others_.number(i));
-      cosine_of_h_.push_back(half_vector(pair.wi, pair.wo).z);
-      least_cosine_.push_back(std::min(pair.wi.z, pair.wo.z));
-      largest_cosine_.push_back(std::max(pair.wi.z, pair.wo.z));
+      // Cosines are compared, and those of one angle are to be equal whatever their last bits say.
+      const TreePoint cosines = on_grid({half_vector(pair.wi, pair.wo).z, std::min(pair.wi.z, pair.wo.z),
+                                         std::max(pair.wi.z, pair.wo.z), 0});
+      cosine_of_h_.push_back(cosines[0]);
+      least_cosine_.push_back(cosines[1]);
+      largest_cosine_.push_back(cosines[2]);
       sum_.push_back(std::accumulate(f.begin(), f.end(), 0.0));
       stale_.push_back(i);
     }

@@ -20,6 +20,7 @@ namespace {
 constexpr double kCornellCount = 1439;
 constexpr double kCornellRadius2 = 0.001;  // [Pharr 2010]
 constexpr double kMinRadius2 = 1e-9;       // samples this near are at one place
+constexpr double kNearNormal = 1e-12;      // theta_h below this is rounding
 constexpr double kSharpness = 100;         // [Pharr 2010]
 constexpr std::size_t kEnough = 3;         // [Pharr 2010]
 constexpr std::size_t kMaxAveraged = 64;   // largest number averaged where a scan is denser than elsewhere
@@ -72,19 +73,21 @@ TreePoint ScatteredBrdf::place(Vec3 wi, Vec3 wo) const noexcept {
   if (rule_ == SampleRule::mean_in_angles) {
     // pbrt-v2's coordinates: (sin theta_i sin theta_o, |phi_i - phi_o| / pi, cos theta_i cos theta_o) [Pharr 2010].
     const double turn = std::abs(std::remainder(phi_of(wi) - phi_of(wo), kTwoPi));
-    return {std::hypot(wi.x, wi.y) * std::hypot(wo.x, wo.y), turn / kPi, wi.z * wo.z, 0};
+    return on_grid({std::hypot(wi.x, wi.y) * std::hypot(wo.x, wo.y), turn / kPi, wi.z * wo.z, 0});
   }
   // The third coordinate is sin theta_h sin theta_d |cos phi_d|, since cos theta_i - cos theta_o = -2 sin theta_h sin
   // theta_d cos phi_d.
+  // The square root would make rounding at the normal large.
+  const auto root = [](double theta_h) { return theta_h < kNearNormal ? 0 : std::sqrt(theta_h / kHalfPi); };
   if (samples_.isotropic)
-    return {std::sqrt(theta_of(half_vector(wi, wo)) / kHalfPi), angle_between(wi, wo) / kPi,
-            0.5 * std::abs(wi.z - wo.z), 0};
+    return on_grid(
+        {root(theta_of(half_vector(wi, wo))), angle_between(wi, wo) / kPi, 0.5 * std::abs(wi.z - wo.z), 0});
   const HalfDiff angles = to_half_diff(wi, wo);
-  const double half = std::sqrt(angles.theta_h / kHalfPi), difference = angles.theta_d / kPi;
+  const double half = root(angles.theta_h), difference = angles.theta_d / kPi;
   // At theta_h = 0 only the sum of the azimuths is defined.
   const double turn = angles.phi_h + angles.phi_d;
-  return {half * std::cos(angles.phi_h), half * std::sin(angles.phi_h), difference * std::cos(turn),
-          difference * std::sin(turn)};
+  return on_grid({half * std::cos(angles.phi_h), half * std::sin(angles.phi_h), difference * std::cos(turn),
+                  difference * std::sin(turn)});
 }
 
 bool ScatteredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
