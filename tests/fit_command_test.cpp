@@ -40,7 +40,7 @@ class FitCommand : public testing::Test {
     ASSERT_EQ(outcome.status, 0) << outcome.output;
     const Fit made = fit(open_source(source, {}), options);
     EXPECT_EQ(read(out()), format_fit(made)) << arguments;
-    auto expected = nlohmann::json::parse(summary_json(made, out(), 0)),
+    auto expected = nlohmann::json::parse(summary_json(made, out(), 0, read(out()).size())),
          found = nlohmann::json::parse(outcome.output);
     expected.erase("seconds");
     found.erase("seconds");

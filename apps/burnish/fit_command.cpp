@@ -34,7 +34,7 @@ struct FitCommand {
   FitArguments how;
   std::string out, to;
   int threads = 0;
-  bool json = false, alone = false;
+  bool json = false, alone = false, simple = false;
 };
 
 std::string figures(const ErrorFigures& e) {
@@ -259,6 +259,8 @@ void check_name_of_json(const FitCommand& arguments) {
 }
 
 void fit_to_material(const FitCommand& arguments) {
+  if (arguments.simple && arguments.to != "openpbr")
+    throw CLI::ValidationError("--simple: expected --to openpbr with it, found --to " + arguments.to);
   for (const FitOption& of_factors : fit_option_table())
     if (arguments.how.given(std::string(of_factors.name)))
       throw CLI::ExcludesError("--to", spelled(of_factors, FitFront::command_line));
@@ -268,7 +270,9 @@ void fit_to_material(const FitCommand& arguments) {
   const Source source = arguments.source.open();
   const MaterialFit fit = [&] {
     Progress progress("fitting");
-    return fit_material(source, arguments.to, {.beside = !arguments.alone, .progress = progress.stages()});
+    return fit_material(
+        source, arguments.to,
+        {.beside = !arguments.alone, .simple = arguments.simple, .progress = progress.stages()});
   }();
   if (!arguments.out.empty()) write_then_rename(arguments.out, format_material(fit));
   if (arguments.json) {
@@ -278,6 +282,7 @@ void fit_to_material(const FitCommand& arguments) {
   fmt::print("{}: {}\n", fit.source, source.findings.format);
   std::visit([](const auto& material) { print(material); }, fit.material);
   print_figures(fit.target, fit.figures, "");
+  if (fit.layered) print_figures("layered", *fit.layered, ", with coat, fuzz and film");
   if (fit.factored)
     print_figures("factored", fit.factored->figures, fmt::format(", {} bytes", fit.factored->bytes));
   print(fit.beyond);
@@ -315,7 +320,7 @@ void fit(const FitCommand& arguments) {
                              ? std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()
                              : fit.report.seconds;
   if (arguments.json) {
-    fmt::print("{}\n", summary_json(fit, arguments.out, seconds));
+    fmt::print("{}\n", summary_json(fit, arguments.out, seconds, bytes.size()));
     return;
   }
   fmt::print("{}: {}\n", fit.report.source, fit.report.source_format);
@@ -332,7 +337,10 @@ void add_material_arguments(CLI::App& verb, FitCommand& arguments) {
   CLI::Option* const to = verb.add_option(
       "--to", arguments.to, "Fits a renderer's material instead, and writes its parameters as JSON.");
   to->check(one_of({targets.begin(), targets.end()}));
-  verb.add_flag("--alone", arguments.alone, "Fits no factored model beside the material of --to.")->needs(to);
+  verb.add_flag("--simple", arguments.simple,
+                "Fits OpenPBR's base and specular inputs alone, and says beside them what layers would give.")
+      ->needs(to);
+  verb.add_flag("--alone", arguments.alone, "Fits nothing else beside the material of --to.")->needs(to);
 }
 
 }  // namespace

@@ -49,11 +49,11 @@ OpenedBaseline* fit_baseline(const OpenedBrdf& source, const std::string& method
 }
 
 nb::object fit_to_material(const OpenedBrdf& source, const std::string& to,
-                           const std::optional<std::filesystem::path>& path, bool beside,
+                           const std::optional<std::filesystem::path>& path, bool beside, bool simple,
                            const nb::object& progress) {
   return from_json(without_gil(FunctionWatch({&source}), [&] {
-    const MaterialFit fit =
-        fit_material(source.source(), to, {.beside = beside, .progress = progress_of(progress)});
+    const MaterialFit fit = fit_material(
+        source.source(), to, {.beside = beside, .simple = simple, .progress = progress_of(progress)});
     if (path) write_then_rename(*path, format_material(fit));
     return summary_json(fit, path ? path->string() : std::string());
   }));
@@ -82,16 +82,17 @@ void bind_fitting(nb::module_& m) {
   m.def("fit", &fit, nb::arg("source"), nb::kw_only(), nb::arg("progress") = nb::none(), nb::arg("how"),
         nb::rv_policy::take_ownership, nb::sig(kOfModels.c_str()), kAboutModels.c_str());
   m.def("fit_material", &fit_to_material, nb::arg("source"), nb::arg("to"), nb::arg("path") = nb::none(),
-        nb::kw_only(), nb::arg("beside") = true, nb::arg("progress") = nb::none(),
+        nb::kw_only(), nb::arg("beside") = true, nb::arg("simple") = false, nb::arg("progress") = nb::none(),
         nb::sig("def fit_material(source: Source, to: str, path: str | os.PathLike | None = None, *, beside: "
-                "bool = True, progress: object | None = None) -> dict"),
+                "bool = True, simple: bool = False, progress: object | None = None) -> dict"),
         "Fits the parameters of a renderer's material, \"openpbr\" or \"gltf\", as `burnish fit --to` does, "
         "and "
         "returns\nwhat its --json prints: parameters, errors, what the BRDF does that the material cannot, "
         "and, "
         "beside, the\nerrors of a factored model. path: a file for the parameters. Of openpbr open_source "
         "takes "
-        "the file and the\nsummary's \"spec\".");
+        "the file and the\nsummary's \"spec\". simple: OpenPBR of base and specular alone; layered has the "
+        "errors with coat, fuzz and film.");
   m.def(
       "conserve_energy",
       [](const OpenedModel& model) {

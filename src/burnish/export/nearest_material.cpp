@@ -8,13 +8,13 @@ namespace burnish {
 
 namespace {
 
-constexpr int kSize = 64;
 constexpr std::size_t kPairs = 20'000;
 
 }  // namespace
 
+// The exposure is that of fit_material, whose pictures have the same size: both find the same inputs.
 NearestOpenPbr nearest_openpbr(BrdfRef brdf) {
-  const Scorer scorer(brdf, {.count = kPairs, .image_size = kSize});
+  const Scorer scorer(brdf, {.count = kPairs});
   const PicturePairs pairs = picture_pairs(brdf, scorer.exposure());
   const OpenPbrParameters parameters =
       fit_openpbr(pairs,
@@ -24,7 +24,7 @@ NearestOpenPbr nearest_openpbr(BrdfRef brdf) {
 }
 
 NearestGltf nearest_gltf(BrdfRef brdf) {
-  const Scorer scorer(brdf, {.count = kPairs, .image_size = kSize});
+  const Scorer scorer(brdf, {.count = kPairs});
   const PicturePairs pairs = picture_pairs(brdf, scorer.exposure());
   const GltfFit fit = fit_gltf(
       pairs, {.grey = pairs.grey(), .anisotropic = !brdf.isotropic(), .tangent = grain_direction(brdf)});

@@ -8,7 +8,7 @@ namespace burnish {
 
 struct NearestOpenPbr {
   OpenPbrParameters parameters;
-  double psnr = 0;  ///< dB, of the pictures of metrics/sphere_images.h, 64 pixels
+  double psnr = 0;  ///< dB, of the pictures of metrics/sphere_images.h
 };
 
 struct NearestGltf {
@@ -17,8 +17,8 @@ struct NearestGltf {
   double relative = 0;  ///< as ErrorFigures has it, of 20,000 pairs
 };
 
-/// Returns the material that fit_openpbr finds for a BRDF of 1 or 3 channels, and how much it looks like it. Takes
-/// seconds.
+/// Returns the material that fit_openpbr finds for a BRDF of 1 or 3 channels, and how much it looks like it. Its inputs
+/// are those of fit_material. Takes seconds.
 NearestOpenPbr nearest_openpbr(BrdfRef brdf);
 
 /// Returns the same for fit_gltf.

@@ -30,7 +30,8 @@ std::string format_fit(const Fit& fit, const std::filesystem::path& name) {
   return format_model_as(name, to_model(fit));
 }
 
-std::string summary_json(const Fit& fit, const std::string& output, double seconds) {
+std::string summary_json(const Fit& fit, const std::string& output, double seconds,
+                         std::optional<std::size_t> file_bytes) {
   nlohmann::ordered_json json = json_of(fit.report);
   json["output"] = output;
   if (const auto* model = std::get_if<FactoredBrdf>(&fit.brdf)) {
@@ -51,6 +52,7 @@ std::string summary_json(const Fit& fit, const std::string& output, double secon
       json["multiplies"] = cost->multiplies;
     }
   }
+  if (file_bytes) json["file_bytes"] = *file_bytes;
   json["seconds"] = seconds;
   return to_text(json, 2);
 }

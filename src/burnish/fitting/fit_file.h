@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <burnish/factors/model_file.h>
@@ -19,7 +21,9 @@ std::string format_fit(const Fit& fit, const std::filesystem::path& name = {});
 
 /// The JSON that `burnish fit --json` prints, indented by two: the report's, then output, model, bytes; of a
 /// model table_bytes, textures, fetches, smallest_factor, reciprocal and its shader's cost, where shaders can show it;
-/// of a baseline table_reads and multiplies; and seconds.
-std::string summary_json(const Fit& fit, const std::string& output, double seconds);
+/// of a baseline table_reads and multiplies; file_bytes, the size of the file that was written, where it is given; and
+/// seconds.
+std::string summary_json(const Fit& fit, const std::string& output, double seconds,
+                         std::optional<std::size_t> file_bytes = {});
 
 }  // namespace burnish

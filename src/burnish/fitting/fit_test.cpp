@@ -187,6 +187,8 @@ void expect_report_in_file(const Fit& made, const std::string& name) {
   EXPECT_EQ(summary.contains("shader"), std::holds_alternative<FactoredBrdf>(made.brdf)) << name;
   EXPECT_EQ(summary.at("bytes"), made.bytes()) << name;
   EXPECT_EQ(summary.at("seconds"), 1.5);
+  EXPECT_FALSE(summary.contains("file_bytes")) << name;
+  EXPECT_EQ(nlohmann::json::parse(summary_json(made, "out", 1.5, 321)).at("file_bytes"), 321) << name;
 }
 
 // The fit of two threads, whose stages only go on.

@@ -26,8 +26,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array<std::string_view, 2> kTargets = {"openpbr", "gltf"};
 
-void fit_material_of(BrdfRef source, double exposure, const MaterialFitOptions& options, MaterialFit& fit) {
-  const PicturePairs pairs = picture_pairs(source, exposure);
+void fit_material_of(BrdfRef source, const Scorer& scorer, const MaterialFitOptions& options,
+                     MaterialFit& fit) {
+  const PicturePairs pairs = picture_pairs(source, scorer.exposure());
   const bool grey = pairs.grey(), anisotropic = !source.isotropic();
   const double tangent = grain_direction(source);
   std::function<void(double)> progress;
@@ -43,10 +44,18 @@ void fit_material_of(BrdfRef source, double exposure, const MaterialFitOptions& 
     fit.material = found.material;
     take(found);
   } else {
-    const OpenPbrFit found = fit_openpbr(
-        pairs, {.grey = grey, .anisotropic = anisotropic, .tangent = tangent, .progress = progress});
+    OpenPbrFitOptions how{.grey = grey,
+                          .anisotropic = anisotropic,
+                          .simple = options.simple,
+                          .tangent = tangent,
+                          .progress = progress};
+    const OpenPbrFit found = fit_openpbr(pairs, how);
     fit.material = OpenPbr(found.parameters);
     take(found);
+    if (!options.simple || !options.beside) return;
+    how.simple = false;
+    how.progress = {};
+    fit.layered = scorer.score(OpenPbr(fit_openpbr(pairs, how).parameters));
   }
 }
 
@@ -70,6 +79,7 @@ Json json_of(const OpenPbrParameters& p) {
 Json report_of(const MaterialFit& fit) {
   Json json{{"target", fit.target}, {"source", fit.source}};
   json.update(json_of(fit.figures));
+  if (fit.layered) json["layered"] = json_of(*fit.layered);
   const auto or_null = [](std::optional<double> figure) { return figure ? Json(*figure) : Json(); };
   json["beyond"] = {{"backscatter", or_null(fit.beyond.backscatter)},
                     {"rings", or_null(fit.beyond.rings)},
@@ -100,6 +110,8 @@ MaterialFit fit_material(const Source& source, std::string_view target, const Ma
   if (std::ranges::find(kTargets, target) == kTargets.end())
     throw Error(fmt::format("material: expected {}, found '{}'{}", fmt::join(kTargets, " or "), target,
                             did_you_mean(target, kTargets)));
+  if (options.simple && target != "openpbr")
+    throw Error(fmt::format("material: expected openpbr as a simple one, found {}", target));
   if (source.ref().channels() != 1 && source.ref().channels() != 3)
     throw Error(fmt::format("{}: expected 1 or 3 channels for {}, found {}", source.name, target,
                             source.ref().channels()));
@@ -111,7 +123,7 @@ MaterialFit fit_material(const Source& source, std::string_view target, const Ma
   const Scorer scorer(brdf, options.figures);
   MaterialFit fit{.target = std::string(target), .source = source.name};
   const auto start = std::chrono::steady_clock::now();
-  fit_material_of(brdf, scorer.exposure(), options, fit);
+  fit_material_of(brdf, scorer, options, fit);
   fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   fit.figures = scorer.score(fit.ref());
   fit.beyond = unexplained(brdf, fit.ref());

@@ -47,6 +47,8 @@ struct MaterialFit {
   int starts = 0;      ///< minimizations run
   ErrorFigures figures;
   Unexplained beyond;
+  /// The score of the same fit with coat, fuzz and film, where a simple OpenPBR was asked for.
+  std::optional<ErrorFigures> layered;
   /// The fit of the source's function by DefaultBudget, scored alike.
   std::optional<FactoredBeside> factored;
   double seconds = 0;  ///< of the material's fit alone, by the wall clock
@@ -60,6 +62,7 @@ std::span<const std::string_view> material_targets();
 
 struct MaterialFitOptions {
   bool beside = true;          ///< fit a factored model too, for its figures
+  bool simple = false;         ///< openpbr of base and specular alone; the fit with layers stands beside it
   FigureOptions figures = {};  ///< of the scores
   /// Called from the calling thread with what is done and a rising share of it, as FitOptions::progress.
   std::function<void(std::string_view stage, double fraction)> progress = {};
@@ -67,7 +70,7 @@ struct MaterialFitOptions {
 
 /// Fits a material as `burnish fit --to TARGET` does: to the reciprocal part of a measurement (SymmetrizedBrdf), to
 /// anything else as it is. The same bits for every number of threads. Throws Error for another target, and for a
-/// source of other than 1 or 3 channels.
+/// source of other than 1 or 3 channels, and where glTF shall be simple.
 MaterialFit fit_material(const Source& source, std::string_view target,
                          const MaterialFitOptions& options = {});
 
@@ -76,8 +79,8 @@ MaterialFit fit_material(const Source& source, std::string_view target,
 std::string format_material(const MaterialFit& fit);
 
 /// The JSON that `burnish fit --to TARGET --json` prints, indented by two: target, source, parameters, psnr, ssim,
-/// relative, rms_log, log_cos, beyond (null what is not known), factored, starts and iterations, of openpbr spec (see
-/// parse_analytic), then output and seconds.
+/// relative, rms_log, log_cos, layered (of a simple OpenPBR), beyond (null what is not known), factored, starts and
+/// iterations, of openpbr spec (see parse_analytic), then output and seconds.
 std::string summary_json(const MaterialFit& fit, const std::string& output);
 
 }  // namespace burnish

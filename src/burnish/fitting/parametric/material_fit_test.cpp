@@ -42,6 +42,23 @@ TEST(MaterialFit, OfOpenPbrIsAFileThatIsOpenedAgain) {
   EXPECT_EQ(json.at("spec"), format_analytic(brdf));
 }
 
+TEST(MaterialFit, SimpleHasBaseAndSpecularAloneAndSaysWhatLayersWouldGive) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const Source source = open_source(
+      "openpbr:base_color=0.5/0.1/0.1,specular_roughness=0.6,coat_weight=1,coat_roughness=0.1", {});
+  MaterialFitOptions options = kAlone;
+  options.simple = true;
+  EXPECT_FALSE(fit_material(source, "openpbr", options).layered);
+  options.beside = true;
+  const MaterialFit fit = fit_material(source, "openpbr", options);
+  const OpenPbrParameters p = std::get<OpenPbr>(fit.material).parameters();
+  EXPECT_EQ(p.coat_weight + p.fuzz_weight + p.thin_film_weight, 0);
+  ASSERT_TRUE(fit.layered);
+  EXPECT_GT(fit.layered->psnr, fit.figures.psnr + 3);
+  EXPECT_EQ(nlohmann::json::parse(summary_json(fit, "")).at("layered").at("relative"), fit.layered->relative);
+  EXPECT_THAT(error_of([&] { fit_material(source, "gltf", options); }), HasSubstr("found gltf"));
+}
+
 TEST(MaterialFit, OfGltfIsAGltfMaterial) {
   const Source source = open_source("ggx:alpha_x=0.16,alpha_y=0.16,f0=0.9/0.6/0.3", {});
   const MaterialFit fit = fit_material(source, "gltf", kAlone);

@@ -17,6 +17,8 @@ namespace {
 constexpr FitEffort kTaste{6, 1e-4, 1e-4}, kFirst{30, 1e-5, 1e-4}, kSift{15, 1e-5, 1e-6},
     kSiftAgain{20, 1e-6, 1e-6}, kAgain{10, 1e-6, 1e-6}, kEnd{40, 1e-6, 1e-6}, kLast{80, 1e-8, 1e-6};
 
+constexpr double kLeastCoatIor = 1.05, kLeastFuzzColor = 0.1;
+
 /// An input, or a channel of a colour.
 struct Unknown {
   std::size_t input;
@@ -43,6 +45,7 @@ Inputs always_held(const OpenPbrFitOptions& options) {
   if (!options.anisotropic)
     held |= inputs_named("specular_roughness_anisotropy") | inputs_named("coat_roughness_anisotropy");
   if (options.grey) held |= kFilm;
+  if (options.simple) held |= kCoat | kFuzz | kFilm;
   return held;
 }
 
@@ -80,6 +83,9 @@ std::vector<Unknown> unknowns_of(const Inputs& held, const OpenPbrFitOptions& op
     if (input.name == "specular_roughness" || input.name == "coat_roughness") unknown.range.min = 0.02;
     if (input.name.ends_with("ior")) unknown.range.max = 3;
     if (input.name == "thin_film_thickness") unknown.range.max = 1.5;
+    // a coat that bends no light is none, and black fuzz only darkens what the base's colour says
+    if (input.name == "coat_ior") unknown.range.min = kLeastCoatIor;
+    if (input.name == "fuzz_color") unknown.range.min = kLeastFuzzColor;
     const bool split = is_color(input) && !options.grey;
     for (int c = 0; c < (split ? 3 : 1); ++c) {
       unknown.channel = split ? c : -1;
@@ -265,7 +271,7 @@ std::vector<Search::Start> search_layers(Search& search, Search& sift, const Pic
   std::vector<Trial> coated = search.run(starts, kFirst);
   progress(0.2);
   std::vector<Search::Start> coats;
-  for (std::size_t i = 0; i < kKept; ++i) add_starts(coats, with_coats(coated[i], always));
+  for (std::size_t i = 0; i < kKept && !options.simple; ++i) add_starts(coats, with_coats(coated[i], always));
   const std::vector<Search::Start> films = with_films(search, coated.front(), always);
   for (const Trial& trial : search.run(coats, kFirst)) coated.push_back(trial);
   std::ranges::stable_sort(coated, {}, &Trial::cost);
@@ -308,7 +314,8 @@ Trial plainly_coated(Search& search, Search& sift, const PicturePairs& pairs,
 /// The same with what shows too little at its default: layers first, then what others say as well.
 Trial simplified(Search& search, Search& sift, const PicturePairs& pairs, const OpenPbrFitOptions& options,
                  Trial best) {
-  constexpr double kAsGood = 1.01, kExact = 2e-11;
+  // a layer is worth half a decibel of the pictures, any other input a percent of the squared error
+  constexpr double kLayersWorth = 1.12, kAsGood = 1.01, kExact = 2e-11;
   const double most = kAsGood * best.cost + kExact;
   if ((best.held & kCoat) != kCoat)
     if (const Trial plain = plainly_coated(search, sift, pairs, options); plain.cost <= most) best = plain;
@@ -324,7 +331,8 @@ Trial simplified(Search& search, Search& sift, const PicturePairs& pairs, const 
       if (group[i])
         std::visit([&](auto member) { without.*member = defaults.*member; }, kOpenPbrInputs[i].member);
     const Trial trial = search.run({{without, best.held | group}}, kAgain).front();
-    if (trial.cost <= most) best = trial;
+    const bool is_layer = group == kFilm || group == kFuzz || group == kCoat;
+    if (trial.cost <= (is_layer ? std::max(most, kLayersWorth * best.cost + kExact) : most)) best = trial;
   }
   return best;
 }
