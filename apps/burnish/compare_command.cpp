@@ -6,10 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <burnish/image/png.h>
 #include <burnish/math/angles.h>
 #include <burnish/report/compare_report.h>
-#include <burnish/report/factor_images.h>
 
 #include "commands.h"
 #include "comparison.h"
@@ -28,18 +26,6 @@ struct CompareArguments {
   FigureOptions figures;
   bool no_symmetrize = false, json = false;
 };
-
-// folder/factors/model_N_TABLE.png for the models that are factored.
-void write_factors(const std::filesystem::path& folder, const std::list<Candidate>& candidates) {
-  int number = 0;
-  for (const Candidate& c : candidates) {
-    ++number;
-    if (!c.model()) continue;
-    std::filesystem::create_directories(folder / "factors");
-    for (const Table& table : c.model()->tables())
-      write_png(folder / "factors" / fmt::format("model_{}_{}.png", number, table.name), factor_image(table));
-  }
-}
 
 // One line for the reference and each model, means over the channels.
 void print_albedos(std::span<const ComparedFigures> figures) {
@@ -192,7 +178,6 @@ void compare(const CompareArguments& arguments) {
           ? compare_models(scorer, models, measured)
           : write_report(arguments.folder, reference.source().name, scorer, models, measured);
   progress.reset();
-  if (!arguments.folder.empty()) write_factors(arguments.folder, candidates);
   if (arguments.json) {
     fmt::print("{}\n", to_json(figures, measured));
     return;

@@ -98,11 +98,18 @@ nb::object compare_models(const OpenedBrdf& reference, const nb::object& models,
       compared.push_back({.name = name,
                           .brdf = candidates.emplace_back(*model, symmetrize).ref(),
                           .bytes = source.bytes(),
-                          .note = source.findings.description});
+                          .note = source.findings.description,
+                          .factored = model->model()});
     }
     const Scorer scorer(made_reciprocal.ref(), {.count = count, .seed = seed});
-    return to_json(report ? write_report(*report, reference.source().name, scorer, compared)
-                          : burnish::compare_models(scorer, compared));
+    const Source& source = reference.source();
+    std::optional<Measurement> measurement = measurement_of(source, made_reciprocal.ref());
+    const Measurement* const measured = measurement ? &*measurement : nullptr;
+    if (!report) return to_json(burnish::compare_models(scorer, compared, measured), measured);
+    // Exchanged directions of a transmission have the light on the other side, so they tell nothing.
+    if (measurement && !source.findings.transmits())
+      measurement->quality = quality_by_exchange(scorer, source.ref(), measurement->nodes);
+    return to_json(write_report(*report, source.name, scorer, compared, measured), measured);
   });
   return from_json(json);
 }
@@ -167,7 +174,9 @@ void bind_error_figures(nb::module_& m) {
                 "count: int = 200000, seed: int = 1, symmetrize: bool = True, report: str | os.PathLike | "
                 "None = None) "
                 "-> list[dict]"),
-        "What `burnish compare --json` prints: one dictionary a model. report: a folder for pictures and "
+        "What `burnish compare --json` prints: one dictionary a model, of a measurement with the figures at "
+        "its "
+        "nodes\nand of scattered samples with the expected error. report: a folder for pictures and "
         "plots.\n\n"
         "models: named by the keys of a dictionary, {\"small\": model}. In a list a model has its source's "
         "name; "

@@ -170,9 +170,23 @@ def test_compare_and_info_print_the_same(cli, ggx, model, tmp_path):
         assert getattr(figures, key) == compared[key]
 
 
+def test_compare_of_samples_has_nodes_and_the_expected_error(cli, ggx, model, tmp_path):
+    samples = tmp_path / "samples.csv"
+    burnish.convert(ggx, samples, "csv", count=400)
+    burnish.write_model(tmp_path / "model.exr", model)
+    rows = burnish.compare_models(
+        burnish.open_source(samples), [burnish.open_source(tmp_path / "model.exr")], count=2000
+    )
+    assert rows == cli("compare", samples, tmp_path / "model.exr", "--count", "2000", "--json")
+    assert rows[0]["nodes"]["count"] > 0 and rows[0]["expected"]["relative"] > 0
+
+
 def test_a_report_is_written(ggx, model, tmp_path):
     burnish.compare_models(ggx, [model], count=1000, report=str(tmp_path / "report"))
-    assert (tmp_path / "report/index.html").exists()
+    page = (tmp_path / "report/index.html").read_text()
+    for table in model.tables:
+        name = f"factors/model_1_{table.name}.png"
+        assert (tmp_path / "report" / name).exists() and name in page
 
 
 def test_errors_are_exceptions_with_the_same_text(cli, tmp_path):

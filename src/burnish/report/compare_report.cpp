@@ -20,6 +20,7 @@
 #include <burnish/metrics/figures_json.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/report/compare_report.h>
+#include <burnish/report/factor_images.h>
 
 namespace burnish {
 
@@ -193,9 +194,24 @@ std::string figures_row(std::string_view name, std::optional<std::uint64_t> byte
                              {"NOTE", escape_markup(note)}});
 }
 
-std::string index_html(const std::string& reference_name, std::span<const ComparedFigures> compared,
-                       const FigureOptions& options, std::span<const std::string> plots,
-                       const Measurement* measurement) {
+std::string factor_file(std::size_t model, const Table& table) {
+  return fmt::format("factors/model_{}_{}.png", model + 1, table.name);
+}
+
+// The pictures of a factored model's tables; nothing for any other BRDF.
+std::string tables_html(const ComparedModel& model, std::size_t number) {
+  if (!model.factored) return {};
+  std::string tables;
+  for (const Table& table : model.factored->tables())
+    tables += filled("table.html", {{"FILE", escape_markup(factor_file(number, table))},
+                                    {"TABLE", escape_markup(table.name)},
+                                    {"LARGEST", fmt::format("{:.4g}", std::ranges::max(table.values))}});
+  return filled("tables.html", {{"NAME", escape_markup(model.name)}, {"TABLES", std::move(tables)}});
+}
+
+std::string index_html(const std::string& reference_name, std::span<const ComparedModel> models,
+                       std::span<const ComparedFigures> compared, const FigureOptions& options,
+                       std::span<const std::string> plots, const Measurement* measurement) {
   std::string rows, sheets, charts;
   if (measurement && measurement->quality)
     rows += figures_row(name_of(*measurement->quality), {}, measurement->quality->figures,
@@ -205,13 +221,15 @@ std::string index_html(const std::string& reference_name, std::span<const Compar
   for (const ComparedFigures& c : compared) rows += figures_row(c.name, c.bytes, c.figures, c.note);
   for (std::size_t i = 0; i < compared.size(); ++i)
     sheets += filled("sheet.html", {{"NAME", escape_markup(compared[i].name)},
-                                    {"FILE", fmt::format("model_{}.png", i + 1)}});
+                                    {"FILE", fmt::format("model_{}.png", i + 1)},
+                                    {"FACTORS", tables_html(models[i], i)}});
   for (const std::string& plot : plots) charts += filled("plot.html", {{"NAME", plot}});
   return filled("index.html", {{"NAME", escape_markup(reference_name)},
                                {"ROWS", std::move(rows)},
                                {"PAIRS", fmt::format("{}", options.count)},
                                {"SEED", fmt::format("{}", options.seed)},
                                {"SIZE", fmt::format("{}", options.image_size)},
+                               {"FLOOR", fmt::format("{:g}", options.floor)},
                                {"NODES", measurement ? nodes_html(*measurement, compared) +
                                                            expected_html(*measurement, compared)
                                                      : std::string()},
@@ -229,6 +247,18 @@ ErrorFigures score_of(const Scorer& scorer, const ComparedModel& model) {
 }
 
 }  // namespace
+
+std::optional<Measurement> measurement_of(const Source& source, BrdfRef scored, bool nodes_asked,
+                                          const std::string& only) {
+  if (!nodes_asked && only.empty() && !is_measurement(source)) return {};
+  Measurement measurement{.nodes = measured_nodes(source), .itself = {}, .quality = {}};
+  if (!only.empty()) measurement.nodes = nodes_of(measurement.nodes, parse_node_part(only));
+  measurement.itself = node_figures(measurement.nodes, scored);
+  if (const auto* scattered = std::get_if<ScatteredBrdf>(&source.brdf))
+    measurement.between = scattered->kriged();
+  if (measurement.between) measurement.expected = expected_error(*measurement.between, scored);
+  return measurement;
+}
 
 std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<const ComparedModel> models,
                                             const Measurement* measurement) {
@@ -430,6 +460,15 @@ void write_pictures(const fs::path& folder, const std::string& reference_name, c
   write_png(folder / "overview.png", compose(overview));
 }
 
+void write_factors(const fs::path& folder, std::span<const ComparedModel> models) {
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    if (!models[m].factored) continue;
+    fs::create_directories(folder / "factors");
+    for (const Table& table : models[m].factored->tables())
+      write_png(folder / factor_file(m, table), factor_image(table));
+  }
+}
+
 // Writes the plots; returns their names.
 std::vector<std::string> write_plots(const fs::path& folder, const Scorer& scorer,
                                      std::span<const ComparedModel> models,
@@ -464,6 +503,7 @@ std::vector<ComparedFigures> write_report(const fs::path& folder, const std::str
   if (error) throw Error::in_file(folder.string(), "a folder to write to", error.message());
 
   write_pictures(folder, reference_name, scorer, models, compared);
+  write_factors(folder, models);
   const std::vector<std::string> plots = write_plots(folder, scorer, models, compared, quality);
 
   const FigureOptions& options = scorer.options();
@@ -474,7 +514,8 @@ std::vector<ComparedFigures> write_report(const fs::path& folder, const std::str
                                          {"image_size", options.image_size},
                                          {"models", json_of(compared, measurement)}};
   write_then_rename(folder / "report.json", dump(report));
-  write_then_rename(folder / "index.html", index_html(reference_name, compared, options, plots, measurement));
+  write_then_rename(folder / "index.html",
+                    index_html(reference_name, models, compared, options, plots, measurement));
   return compared;
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <burnish/factors/factored_brdf.h>
 #include <burnish/image/svg_plot.h>
 #include <burnish/metrics/albedo.h>
 #include <burnish/metrics/error_figures.h>
@@ -15,6 +16,7 @@
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/expected_error.h>
 #include <burnish/reflectance/node_figures.h>
+#include <burnish/source.h>
 
 namespace burnish {
 
@@ -24,6 +26,8 @@ struct ComparedModel {
   BrdfRef brdf;
   std::optional<std::uint64_t> bytes = {};  ///< of its tables as stored
   std::string note = {};                    ///< how it was made: factors, fit time; one line, may be empty
+  /// The model whose tables a report shows; null for any other BRDF. It must outlive this.
+  const FactoredBrdf* factored = nullptr;
 };
 
 /// The share of light from one direction (radians) that is reflected, by the reference and by a model.
@@ -62,6 +66,12 @@ struct Measurement {
   std::optional<ExpectedError> expected = {};  ///< the error of that function itself
 };
 
+/// Returns the facts known of an opened reference, which is scored as `scored` (reciprocal or as it is). Only the nodes
+/// that `only` names are kept, where it is not empty (parse_node_part). Returns nothing for a formula or model, unless
+/// nodes are asked for. Throws Error where nodes are asked for and there are none. The source must outlive the result.
+std::optional<Measurement> measurement_of(const Source& source, BrdfRef scored, bool nodes_asked = false,
+                                          const std::string& only = {});
+
 /// Figures of every model, in their order; at the nodes too where a measurement is given. Throws Error as Scorer.
 std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<const ComparedModel> models,
                                             const Measurement* measurement = nullptr);
@@ -98,11 +108,14 @@ enum class ErrorAxis { theta_h, theta_d };
 Plot error_plot(std::span<const ComparedModel> models, std::span<const std::vector<PairError>> errors,
                 ErrorAxis axis, const MeasurementQuality* measurement = nullptr);
 
-/// Writes the folder of a comparison, made if missing: index.html (needs nothing beside the folder),
-/// report.json, overview.png (reference and all models), model_N.png (reference, model and difference under
-/// the three lights and the dome), spheres/ (each picture by itself), and plots as SVG and PNG; of a measurement
-/// also what it would score itself. Returns the figures. Throws Error as Scorer, or if there is no model or the
-/// folder cannot be written.
+/// Writes the folder of a comparison, made if missing:
+/// - index.html (needs nothing beside the folder) and report.json;
+/// - overview.png (reference and all models) and model_N.png (reference, model and difference under the three lights
+///   and the dome);
+/// - spheres/ (each picture by itself) and factors/ (each table of a factored model, see factor_image);
+/// - plots as SVG and PNG, of a measurement also with what it would score itself.
+///
+/// Returns the figures. Throws Error as Scorer, or if there is no model or the folder cannot be written.
 std::vector<ComparedFigures> write_report(const std::filesystem::path& folder,
                                           const std::string& reference_name, const Scorer& scorer,
                                           std::span<const ComparedModel> models,

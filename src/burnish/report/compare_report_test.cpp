@@ -13,6 +13,7 @@
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/report/compare_report.h>
 #include <burnish/testing/brdfs.h>
+#include <burnish/testing/models.h>
 #include <burnish/testing/sanitized.h>
 #include <burnish/testing/tools.h>
 
@@ -97,6 +98,28 @@ TEST_F(CompareReport, FolderHoldsEveryFileItsPageShows) {
   const auto report = nlohmann::json::parse(read_file(folder_ / "report.json").text());
   EXPECT_EQ(report["reference"], "a reference & more");
   EXPECT_EQ(report["models"].size(), 3u);
+}
+
+TEST_F(CompareReport, ShowsTheTablesOfFactoredModelsAndExplainsEachFigure) {
+  const FactoredBrdf factored = random_model("pqp", {"p=8", "q=9x9"}, 3, TableFormat::single);
+  models_.push_back({"tables", factored, factored.bytes(), "", &factored});
+  write_report(folder_, "r", Scorer(reference_, kQuick), models_);
+  for (const Table& table : factored.tables())
+    EXPECT_GE(read_png(folder_ / fmt::format("factors/model_4_{}.png", table.name)).width, 9) << table.name;
+  const std::string page(read_file(folder_ / "index.html").text());
+  EXPECT_NE(page.find(fmt::format(
+                "<img src=\"factors/model_4_q.png\" alt=\"Table q\"><figcaption>q, at most {:.4g}<",
+                std::ranges::max(factored.tables()[1].values))),
+            page.npos);
+  EXPECT_EQ(page.find("Tables of twice"), page.npos);  // it has none
+  EXPECT_EQ(page.find('@'), page.npos) << page.substr(page.find('@'), 20);
+  // Every heading of the table of figures has its explanation.
+  const std::string table = page.substr(page.find("<table>"), page.find("</tr>") - page.find("<table>"));
+  for (std::size_t at = table.find("<th>"); at != table.npos; at = table.find("<th>", at + 1)) {
+    const std::string head = table.substr(at + 4, table.find("</th>", at) - at - 4);
+    if (head.empty() || head == "model") continue;
+    EXPECT_NE(page.find("<dt>" + head + "</dt>"), page.npos) << head;
+  }
 }
 
 TEST_F(CompareReport, OfAMeasurementSaysWhatItWouldScoreItself) {
