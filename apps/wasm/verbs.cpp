@@ -17,6 +17,7 @@
 
 #include <burnish/error.h>
 #include <burnish/export/export_model.h>
+#include <burnish/export/export_openpbr.h>
 #include <burnish/export/export_surface.h>
 #include <burnish/factors/compact_file.h>
 #include <burnish/factors/edit.h>
@@ -326,9 +327,9 @@ Reply fit_material(const Request& request, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   Fit found = fit(source, options);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::string report = summary_json(found, request.arguments.value("name", "model"), seconds);
-  return {.json = std::move(report),
-          .blobs = {format_compact(to_model(std::move(found)), CompactContent::model_and_notes)}};
+  std::string file = format_compact(to_model(found), CompactContent::model_and_notes);
+  std::string report = summary_json(found, request.arguments.value("name", "model"), seconds, file.size());
+  return {.json = std::move(report), .blobs = {std::move(file)}};
 }
 
 // A number or a list of them.
@@ -575,6 +576,10 @@ Reply export_material(const Request& request) {
   given.read("exact", options.exact);
   given.read("half", options.half);
   given.read("mips", options.mips);
+  // OpenPBR is exported by its formulas, without a fit.
+  if (const auto* const brdf = std::get_if<AnalyticBrdf>(&source.brdf);
+      brdf && brdf->model().name == "openpbr")
+    return reply_of(export_openpbr(*brdf, options));
   return reply_of(export_model(model_of(a), options));
 }
 
