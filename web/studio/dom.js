@@ -113,4 +113,19 @@ export function say(text, kind = "note") {
   if (kind === "note" && text) say.timer = setTimeout(() => (line.hidden = true), 5000);
 }
 // A thrown thing as one line.
-export const lineOf = (error) => String(error?.message ?? error).split("\n")[0].slice(0, 400);
+// What the library says of the command line, in the page's words.
+const kPageWords = [
+  [/`burnish help formats` lists what is read/, "the list beside the files' box says what is read"],
+  [/,? ?which `burnish (?:fit|convert)` makes of it/, ""],
+  [/; `burnish fit` makes a model of it for that/, "; fit a model for that"],
+  [/ \(`burnish info FILE` [^)]*\)/, ""],
+  [/ Reflectance factors\? --brf divides them by pi\./, " These may be reflectance factors, which are pi times as large."],
+  [/ ?\(--scale-to-tis scales them\)/, ""],
+  [/--has-cosine/g, "“Times cos”"],
+  [/--illuminant/g, "“Light”"],
+  [/--back\b/g, "“Back side”"],
+  [/--([a-z]+)(?:-([a-z]+))?(?:-([a-z]+))?/g, (_, ...words) => words.slice(0, 3).filter(Boolean).join(" ")],
+  [/expected the command line, found WebAssembly/, "expected burnish's command line, found the page"],
+];
+export const pageWords = (text) => kPageWords.reduce((said, [from, to]) => said.replace(from, to), text);
+export const lineOf = (error) => pageWords(String(error?.message ?? error).split("\n")[0]).slice(0, 400);

@@ -1,7 +1,7 @@
 // OpenEXR pictures of one part, scan lines or tiles, as programs write light from all around: rgb floats, rows from the
-// top, of tiles the largest level. Compressions: all but DWAA and DWAB. Throws Error where the bytes say something else.
+// top, of tiles the largest level. All compressions. Throws Error where the bytes say something else.
 // Source: OpenEXR 3, its technical introduction.
-import {expected, kBytes, kMaxEach, kNames, kRows, kTypes, Reader, unpack} from "./exr_blocks.js";
+import {expected, halfAt, kBytes, kMaxEach, kNames, kRows, kTypes, Reader, unpack} from "./exr_blocks.js";
 
 const kMagic = 20000630, kTiles = 0x200, kDeep = 0x800, kParts = 0x1000;
 const kMaxPixels = 1 << 26, kMaxValue = 60000;  // of what is drawn
@@ -99,11 +99,5 @@ function copyRows(view, {channels, wanted, width, count, stride}, to) {
     });
 }
 const number = (view, type, at) =>
-  type === kTypes.half ? half(view.getUint16(at, true)) : type === kTypes.float ? view.getFloat32(at, true) : view.getUint32(at, true);
+  type === kTypes.half ? halfAt(view.getUint16(at, true)) : type === kTypes.float ? view.getFloat32(at, true) : view.getUint32(at, true);
 const clean = (x) => (x > 0 ? Math.min(x, kMaxValue) : 0);
-function half(bits) {
-  const exponent = (bits >> 10) & 31, fraction = bits & 1023, sign = bits & 0x8000 ? -1 : 1;
-  if (exponent === 31) return fraction ? NaN : sign * Infinity;
-  return sign * (exponent ? (1 + fraction / 1024) * 2 ** (exponent - 15) : fraction * 2 ** -24);
-}
-

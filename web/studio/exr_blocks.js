@@ -1,12 +1,13 @@
 // The blocks of OpenEXR pictures. Source: OpenEXR 3, its technical introduction, ImfPizCompressor, ImfHuf, ImfWav,
-// ImfPxr24Compressor, ImfB44Compressor.
+// ImfPxr24Compressor, ImfB44Compressor; DWA is in exr_dwa.js.
+import {unpackDwa} from "./exr_dwa.js";
 
 export const kTypes = {half: 1, float: 2}, kBytes = [4, 2, 4];
 export const kNames = ["none", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"];
-export const kRows = [1, 1, 1, 16, 32, 16, 32, 32];  // of a block
+export const kRows = [1, 1, 1, 16, 32, 16, 32, 32, 32, 256];  // of a block
 // bytes that one byte can stand for: a run of RLE, zlib's longest match [RFC 1951] (of PXR24 three quarters of a float), PIZ's
-// 256 words in 10 bits, B44's square in three bytes
-export const kMaxEach = [1, 64, 1032, 1032, 410, 1376, 11, 11];
+// 256 words in 10 bits, B44's square in three bytes, DWA's square in a word of each of its parts, which zlib packs
+export const kMaxEach = [1, 64, 1032, 1032, 410, 1376, 11, 11, 32 * 1032, 32 * 1032];
 const kPlanes = [4, 2, 3];  // bytes of values in PXR24
 const kFlat = 13;           // a shift that says a square of one value
 export const expected = (what, found) => new Error(`.exr: expected ${what}, found ${found}`);
@@ -46,12 +47,13 @@ export async function unpack(packed, compression, how) {
     case "PIZ": return unpackPiz(new Reader(packed), size, how);
     case "PXR24": return planes(await inflate(packed, sizeOf(how, kPlanes)), size, how);
     case "B44": case "B44A": return inRows(squares(new Reader(packed), how), size, how);
+    case "DWAA": case "DWAB": return inRows(await unpackDwa(new Reader(packed), how), size, how);
     default: throw expected(`${size} bytes of rows`, packed.length);
   }
 }
 const sizeOf = ({channels, width, count}, bytes) => count * width * channels.reduce((sum, {type}) => sum + bytes[type], 0);
 
-async function inflate(packed, size) {
+export async function inflate(packed, size) {
   const bytes = new Uint8Array(size), reader = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate")).getReader();
   let at = 0;
   try {
@@ -65,7 +67,7 @@ async function inflate(packed, size) {
   if (at !== size) throw expected(`${size} bytes in a block`, at);
   return bytes;
 }
-function runs(packed, size) {
+export function runs(packed, size) {
   const bytes = new Uint8Array(size), from = new Reader(packed);
   for (let at = 0; at < size;) {
     const code = (from.u8() << 24) >> 24, count = code < 0 ? -code : code + 1;
@@ -77,7 +79,7 @@ function runs(packed, size) {
   return bytes;
 }
 // Sums of differences, whose even places stand before the odd ones.
-function interleaved(bytes) {
+export function interleaved(bytes) {
   const result = new Uint8Array(bytes.length), odd = (bytes.length + 1) >> 1;
   for (let i = 1; i < bytes.length; ++i) bytes[i] += bytes[i - 1] - 128;
   for (let i = 0; i < bytes.length; ++i) result[i] = bytes[(i >> 1) + (i & 1 ? odd : 0)];
@@ -101,6 +103,12 @@ function planes(bytes, size, {channels, width, count}) {
       from += parts * width;
     }
   return result;
+}
+
+export function halfAt(bits) {
+  const exponent = (bits >> 10) & 31, fraction = bits & 1023, sign = bits & 0x8000 ? -1 : 1;
+  if (exponent === 31) return fraction ? NaN : sign * Infinity;
+  return sign * (exponent ? (1 + fraction / 1024) * 2 ** (exponent - 15) : fraction * 2 ** -24);
 }
 
 // Channel after channel as row after row.
@@ -188,7 +196,7 @@ function codeLengths(next, first, last) {
   return lengths;
 }
 
-function huffman(from, size) {
+export function huffman(from, size) {
   const [first, last] = [from.u32(), from.u32()], words = new Uint16Array(size);
   from.u32();
   const bitCount = from.u32();

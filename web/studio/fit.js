@@ -29,7 +29,7 @@ function typedFetches() {
   return Number.isFinite(Number(text)) ? Number(text) : text;
 }
 
-// The library's own default, which is free to take a fetch more than the preset shows.
+// Whether the preset is the default, whose fetches depend on the material.
 const isDefault = () => find("#presets [data-value=default]").getAttribute("aria-checked") === "true";
 
 // What a fit follows: as chosen where there is a choice.
@@ -85,8 +85,8 @@ async function fit(event) {
   const reference = referenceOf(state.shown);
   if (!reference || isSurface(reference) || stop) return;
   await busy(reference, async (signal) => {
-    const options = {target: targetOf(reference)};
-    if (!isDefault()) Object.assign(options, {budget: typedBudget(), fetches: typedFetches()});
+    // what the fields show holds, of the default too
+    const options = {target: targetOf(reference), budget: typedBudget(), fetches: typedFetches()};
     const {entry} = await fitOne(reference, options, signal);
     if (!state.entries.includes(reference)) {
       entry.material.close?.();
@@ -142,6 +142,18 @@ function drawCurve() {
 // A figure with few digits; with all of them where it is pointed at.
 const figure = (x, digits) => make("span", {title: x}, number(Math.abs(x) < kNothing ? 0 : x, digits));
 
+// What each figure says, where it is pointed at and below the table.
+const kExplained = {
+  PSNR: "how alike pictures of lit spheres are, in decibels; more is better",
+  SSIM: "how alike their structures are; 1 is equal",
+  relative: "mean ratio of both values less 1: 0.1 is a mean difference of 10 %",
+  "rms log": "root mean square of that ratio's logarithm; large errors add more",
+  "log cos": "mean difference of ln(1 + f cos θi); dark values add little",
+};
+const explained = (name) => make("abbr", {title: kExplained[name]}, name);
+const explanations = () => make("details", {}, make("summary", {}, "What the figures are"),
+  make("dl", {}, ...Object.entries(kExplained).flatMap(([name, text]) => [make("dt", {}, name), make("dd", {}, `${text}.`)])));
+
 // A long name without its middle: its end tells fits of one file apart.
 const shortened = (name) => make("span", {class: "name", title: name}, name.length > 17 ? `${name.slice(0, 8)}…${name.slice(-8)}` : name);
 
@@ -175,11 +187,11 @@ const comparedWith = (reference) => state.entries.filter((entry) => reference &&
 function drawFigures() {
   const reference = referenceOf(state.shown), place = find("#figures"), models = comparedWith(reference);
   if (!models.length) {
-    place.replaceChildren(make("p", {class: "hint"}, "The figures of each fit, as ", make("code", {}, "compare"), " prints them, and the cost of its shader."));
-    find("#compared").replaceChildren(make("p", {class: "hint"}, "Of what stands beside something else, as ", make("code", {}, "compare"), " prints them."));
+    place.replaceChildren(make("p", {class: "hint"}, "The figures of each fit beside its source, and the cost of its shader."));
+    find("#compared").replaceChildren(make("p", {class: "hint"}, "Albedo and errors of what stands beside something else."));
     return;
   }
-  const heads = ["Model", "PSNR", "SSIM", "relative", "rms log", "log cos"];
+  const heads = ["Model", ...Object.keys(kExplained).map(explained)];
   const rows = models.map((model) => {
     const f = judgedOf(reference, model)?.figures ?? {};  // none yet of what was just edited
     return row([make("button", {type: "button", title: model.name, onclick: () => showBeside(model)}, model.model ? bytesText(model.info.bytes) : model.name),
@@ -191,6 +203,7 @@ function drawFigures() {
     `${many(cost.divisions, "division")}, ${many(cost.roots, "root")}, ${many(cost.powers, "power")} a light.${model.seconds && !model.edited ? ` Fitted in ${number(model.seconds, 2)} s.` : ""}`;
   place.replaceChildren(
     make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "Figures of the models"}, table("", heads, rows)),
+    explanations(),
     wrong ? make("p", {class: "hint"}, `${model.name} has no figures: ${wrong}`) : "",
     cost ? make("p", {class: "cost"}, costText) : "");
   find("#compared").replaceChildren(...(figures ? moreFigures(reference, model, figures) : []));

@@ -1,5 +1,5 @@
 // What `info --json` says, as a panel.
-import {bytesText, find, make, number, row, table} from "./dom.js";
+import {bytesText, find, make, number, pageWords, row, table} from "./dom.js";
 import {onChange, state} from "./state.js";
 
 const span = ([low, high]) => `${number(low, 3)}° to ${number(high, 3)}°`;
@@ -79,7 +79,7 @@ function draw() {
     return;
   }
   const notes = info.conventions?.filter((text) => !text.startsWith("notes of the fit")) ?? [];
-  notes.push(...(info.warnings ?? []).map((text) => `Warning: ${text}`));
+  notes.push(...(info.warnings ?? []).map((text) => `Warning: ${pageWords(text)}`));
   if (info.left_out?.length) notes.push(`Left out: ${info.left_out.join(", ")}.`);
   place.replaceChildren(
     make("dl", {}, ...facts(info, entry).flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),

@@ -212,7 +212,7 @@ export const pictureFragment = `#version 300 es
 precision highp float;
 uniform highp sampler2D left, right, left_off, right_off;
 uniform vec2 shrunk;  // sides of what is read, of what is drawn
-uniform float exposure, divider;
+uniform float exposure, divider, factor;
 uniform int curve, shown;
 uniform vec3 background;
 out vec4 color;
@@ -235,7 +235,7 @@ void main() {
   if (shown == 3) {
     vec3 apart = abs(tone(a) - tone(b));
     float error = max(apart.r, max(apart.g, apart.b));
-    color = vec4(mix(background, heat(clamp(error * 5.0, 0.0, 1.0)), a.a), 1.0);
+    color = vec4(mix(background, heat(clamp(error * factor, 0.0, 1.0)), a.a), 1.0);
     return;
   }
   bool first = shown == 0 || (shown == 2 && gl_FragCoord.x < divider);

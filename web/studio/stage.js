@@ -210,6 +210,10 @@ function connect() {
     expose();
   });
   find("#curve").addEventListener("change", (event) => view.set({curve: Number(event.target.value)}));
+  find("#error-factor").addEventListener("change", ({target: {value}}) => {
+    find("#error-most").textContent = `${100 / value} %`;
+    view.set({factor: Number(value)});
+  });
   find("#tangents").addEventListener("change", showTangents);
   find("#add-light").addEventListener("click", () => {
     const {lights} = view.settings;

@@ -1,6 +1,6 @@
 // Everything that can be taken away: shaders, files, pictures, a link.
 import {sayError, stoppable} from "./busy.js";
-import {bytesText, css, find, make, replaceKeepingFocus, saveFile, say} from "./dom.js";
+import {bytesText, css, find, make, pageWords, replaceKeepingFocus, saveFile, say} from "./dom.js";
 import {linkOf} from "./link.js";
 import {isSurface, modelShown, onChange, referenceOf, state} from "./state.js";
 import {picture} from "./stage.js";
@@ -9,6 +9,8 @@ import {zip} from "./zip.js";
 const languages = {glsl: "GLSL 4.50", glsl_es: "GLSL ES 3.00", hlsl: "HLSL", slang: "Slang", wgsl: "WGSL", msl: "Metal", cpp: "C++"};
 const modelFiles = {burnish: ".burnish", model: "OpenEXR", ktx2: "KTX2 textures", three: "three.js", babylon: "Babylon.js", html: "Page", gltf: "glTF",
                     materialx: "MaterialX", usda: "USD", mdl: "MDL"};
+// what OpenPBR's inputs are written as by their formulas, without a fit
+const openPbrFiles = {materialx: "MaterialX", usda: "USD", gltf: "glTF", mdl: "MDL", three: "three.js", babylon: "Babylon.js", html: "Page", ...languages};
 const surfaceFiles = {burnish: ".burnish", ktx2: "KTX2 textures", png: "PNG maps", three: "three.js", html: "Page", gltf: "glTF"};
 // what anything can be written as, and the endings of names
 const anyFiles = {merl: "MERL", utia: "UTIA", rgl: "RGL", mbsdf: "MBSDF", zemax: "Zemax", tensortree: "Tensor tree", openmaterial: "OpenMATERIAL",
@@ -26,7 +28,7 @@ function stem(entry) {
 
 // Exports are bytes, or files {name, bytes}.
 async function filesOf(entry, kind, signal) {
-  const onLosses = (losses) => say(`${entry.name} as ${kind}: lost: ${losses.join("; ")}`);
+  const onLosses = (losses) => say(pageWords(`${entry.name} as ${kind}: lost: ${losses.join("; ")}`));
   const made = await entry.material.export(kind, {name: stem(entry)}, {signal, onLosses});
   return Array.isArray(made) ? made : [{name: `${stem(entry)}.${kExtensions[kind] ?? kind}`, bytes: made}];
 }
@@ -67,7 +69,7 @@ async function copy(text, what) {
 function shaderGroup(entry) {
   const text = make("pre", {tabindex: 0, role: "region", "aria-label": "Shader", hidden: !textOpen});
   const fill = async () => {
-    if (textOpen) text.textContent = (await entry.material.shader(language)).code;
+    if (textOpen) text.textContent = (await entry.material.shader(language, {name: stem(entry)})).code;
   };
   const select = make("select", {"aria-label": "Language", onchange: () => {
     language = select.value;
@@ -85,9 +87,9 @@ function shaderGroup(entry) {
   fill().catch(sayError);
   return make("div", {}, make("h3", {}, `Shader of ${entry.name}`),
     make("div", {class: "buttons"}, select, toggle,
-      make("button", {type: "button", onclick: guarded(async (signal) => copy((await entry.material.shader(language, {}, {signal})).code, "Shader"))}, "Copy"),
+      make("button", {type: "button", onclick: guarded(async (signal) => copy((await entry.material.shader(language, {name: stem(entry)}, {signal})).code, "Shader"))}, "Copy"),
       make("button", {type: "button", "data-export": "shader", onclick: guarded(async (signal) => {
-        saveFile(`${stem(entry)}.${extension[language]}`, (await entry.material.shader(language, {}, {signal})).code, "text/plain");
+        saveFile(`${stem(entry)}.${extension[language]}`, (await entry.material.shader(language, {name: stem(entry)}, {signal})).code, "text/plain");
       })}, "Save")), text);
 }
 
@@ -176,9 +178,12 @@ function draw() {
   }
   const surface = isSurface(model), files = surface ? surfaceFiles : modelFiles, apart = [state.shown, state.beside].filter((entry) => entry && !isSurface(entry));
   replaceKeepingFocus(place,
-    model ? shaderGroup(model) : make("p", {class: "hint"}, "Fit first: a model has a shader, textures and a link."),
+    model ? shaderGroup(model) : make("p", {class: "hint"}, state.shown.spec === "openpbr" ? "Fit a model for textures and a link." : "Fit first: a model has a shader, textures and a link."),
     model ? make("div", {}, make("h3", {}, surface ? "Surface" : "Model"), make("div", {class: "buttons"}, ...Object.entries(files).map(([kind, title]) => saveButton(model, kind, title)))) : "",
     model ? linkGroup(model) : "",
+    ...apart.filter(({spec}) => spec === "openpbr").map((each) => make("div", {"data-openpbr": each.id}, make("h3", {}, `OpenPBR of ${each.name}`),
+      make("p", {class: "hint"}, "The inputs as the sliders have them; no fit is needed."),
+      make("div", {class: "buttons"}, ...Object.entries(openPbrFiles).map(([kind, title]) => saveButton(each, kind, title))))),
     ...apart.map((each) =>
       make("div", {"data-of": each.id}, make("h3", {}, `${each.name} as`),
         make("div", {class: "buttons"}, ...Object.entries(anyFiles).filter(([kind]) => kind !== "exr" || !each.model).map(([kind, title]) => saveButton(each, kind, title))))),

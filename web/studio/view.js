@@ -24,7 +24,7 @@ export class View {
     if (!this.gl.getExtension("EXT_color_buffer_float"))
       throw new Error("This GPU draws into no float textures, so nothing is drawn; all else works.");
     this.settings = {
-      shape: "sphere", around: "studio", exposure: 0, curve: 0, shown: 0, divider: 0.5, yaw: 0.5, pitch: 0.35,
+      shape: "sphere", around: "studio", exposure: 0, curve: 0, shown: 0, divider: 0.5, factor: 5, yaw: 0.5, pitch: 0.35,
       tangents: false, lights: [{place: normalize([-0.5, 0.55, 0.7]), color: [14, 14, 14]}],
     };
     this.forms = new Map();
@@ -57,7 +57,7 @@ export class View {
 
   set(changes) {
     Object.assign(this.settings, changes);
-    const onlyPicture = Object.keys(changes).every((name) => ["exposure", "curve", "divider"].includes(name));
+    const onlyPicture = Object.keys(changes).every((name) => ["exposure", "curve", "divider", "factor"].includes(name));
     if (onlyPicture) this.ask();
     else this.restart();
   }
@@ -373,7 +373,7 @@ export class View {
 
   // The sums as a picture, or a small one of the left object.
   compose(small) {
-    const gl = this.gl, {exposure, curve, shown, divider, tangents} = this.settings, {width, height} = this.canvas;
+    const gl = this.gl, {exposure, curve, shown, divider, factor, tangents} = this.settings, {width, height} = this.canvas;
     const sums = [0, 1].map((side) => this.targets[1 + 2 * side + (this.frames % 2)].color);
     const off = this.off.map((is) => (is?.passes ? is.targets[is.passes % 2].color : this.black));
     this.into(null, this.picture, ({at}) => {
@@ -386,6 +386,7 @@ export class View {
       gl.uniform1i(at("curve"), curve);
       gl.uniform1i(at("shown"), this.sides[1] && !small ? shown : 0);
       gl.uniform1f(at("divider"), divider * this.canvas.width);
+      gl.uniform1f(at("factor"), factor);
       gl.uniform3fv(at("background"), this.background ?? [0.1, 0.1, 0.1]);
     });
     if (tangents) this.drawTangents();
