@@ -496,10 +496,10 @@ for (const names of [["a.binary", "a.burnish"], ["a.burnish", "a.binary"]]) {
 await page.selectOption("#start", "openpbr");
 await until(page, 1);
 const [{info: {name: sliders}}] = await opened(page);
-run("export", sliders, "--to", "materialx", "--to", "usda", "--to", "glsl", "--name", "openpbr", "-o", file("sliders"));
-for (const [kind, name] of [["materialx", "openpbr.mtlx"], ["usda", "openpbr.usda"], ["glsl", "openpbr.glsl"]])
-  assert.equal(unpacked(await save(page, `[data-openpbr] [data-export=${kind}]`, `openpbr.${kind}.zip`))[name].toString(), fs.readFileSync(file(`sliders/${name}`), "utf8"));
-assert.ok(unpacked(await save(page, "[data-openpbr] [data-export=gltf]", "openpbr.gltf.zip"))["openpbr.glb"].length > 100);
+run("export", sliders, "--to", "materialx", "--to", "usda", "--name", "openpbr", "-o", file("sliders"));
+for (const [kind, name] of [["materialx", "openpbr.mtlx"], ["usda", "openpbr.usda"]])
+  assert.equal(fs.readFileSync(await save(page, `[data-openpbr] [data-export=${kind}]`, name), "utf8"), fs.readFileSync(file(`sliders/${name}`), "utf8"));
+assert.ok(fs.statSync(await save(page, "[data-openpbr] [data-export=gltf]", "openpbr.glb")).size > 100);
 await page.click("#list .close");
 await until(page, 0);
 

@@ -9,8 +9,8 @@ import {zip} from "./zip.js";
 const languages = {glsl: "GLSL 4.50", glsl_es: "GLSL ES 3.00", hlsl: "HLSL", slang: "Slang", wgsl: "WGSL", msl: "Metal", cpp: "C++"};
 const modelFiles = {burnish: ".burnish", model: "OpenEXR", ktx2: "KTX2 textures", three: "three.js", babylon: "Babylon.js", html: "Page", gltf: "glTF",
                     materialx: "MaterialX", usda: "USD", mdl: "MDL"};
-// what OpenPBR's inputs are written as by their formulas, without a fit
-const openPbrFiles = {materialx: "MaterialX", usda: "USD", gltf: "glTF", mdl: "MDL", three: "three.js", babylon: "Babylon.js", html: "Page", ...languages};
+// what OpenPBR's inputs are written as, without a fit
+const openPbrFiles = {materialx: "MaterialX", usda: "USD", gltf: "glTF"};
 const surfaceFiles = {burnish: ".burnish", ktx2: "KTX2 textures", png: "PNG maps", three: "three.js", html: "Page", gltf: "glTF"};
 // what anything can be written as, and the endings of names
 const anyFiles = {merl: "MERL", utia: "UTIA", rgl: "RGL", mbsdf: "MBSDF", zemax: "Zemax", tensortree: "Tensor tree", openmaterial: "OpenMATERIAL",
@@ -178,7 +178,7 @@ function draw() {
   }
   const surface = isSurface(model), files = surface ? surfaceFiles : modelFiles, apart = [state.shown, state.beside].filter((entry) => entry && !isSurface(entry));
   replaceKeepingFocus(place,
-    model ? shaderGroup(model) : make("p", {class: "hint"}, state.shown.spec === "openpbr" ? "Fit a model for textures and a link." : "Fit first: a model has a shader, textures and a link."),
+    model ? shaderGroup(model) : make("p", {class: "hint"}, state.shown.spec === "openpbr" ? "Fit a model for a shader, textures and a link." : "Fit first: a model has a shader, textures and a link."),
     model ? make("div", {}, make("h3", {}, surface ? "Surface" : "Model"), make("div", {class: "buttons"}, ...Object.entries(files).map(([kind, title]) => saveButton(model, kind, title)))) : "",
     model ? linkGroup(model) : "",
     ...apart.filter(({spec}) => spec === "openpbr").map((each) => make("div", {"data-openpbr": each.id}, make("h3", {}, `OpenPBR of ${each.name}`),
