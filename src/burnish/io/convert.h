@@ -9,48 +9,56 @@
 
 namespace burnish {
 
-/// Names of the formats that convert writes. "exr", slices for a viewer, cannot be read back. "model" and "burnish" are
-/// the two files of a model, format_model's and format_compact's.
+/// Returns the names of the formats that convert writes. "exr", slices for a viewer, cannot be read back. "model" and
+/// "burnish" are the two files of a model: the bytes of format_model and of format_compact.
 std::vector<std::string_view> convert_formats();
 
 struct ConvertOptions {
   std::size_t count =
-      100'000;             ///< samples drawn for "astm", "csv" and "openmaterial" of a source not scattered
-  std::uint64_t seed = 1;  ///< of these
-  bool entries = false;    ///< instead of drawing: every entry of a table that is no hole
+      100'000;  ///< samples drawn for "astm", "csv" and "openmaterial" if the source is not scattered
+  std::uint64_t seed = 1;  ///< seed of these samples
+  bool entries = false;    ///< write every known entry of a table instead of drawing samples
   int cells = 90;  ///< along each polar angle of "merl", "mbsdf" and "exr"; twice as many along the azimuth
   bool notes = false;  ///< keep the fit's notes in "burnish"
 };
 
 struct Converted {
   std::string bytes;
-  std::vector<std::string> losses;  ///< what the bytes say less than the source's file, a phrase each
+  std::vector<std::string> losses;  ///< what the source's file holds and the bytes do not, a phrase each
   std::vector<std::string>
-      notes;  ///< what they say otherwise, without a loss: "TIS is that of the values now"
+      notes;  ///< what differs without a loss, a phrase each: "TIS is that of the values now"
   std::vector<std::string> warnings;  ///< why the result may be of little use, a sentence each
   bool resampled = false;             ///< values were sampled anew, at cells or nodes
 };
 
-/// Off by more, a conversion warns: the figure `relative` of its values.
+/// A conversion warns if the figure `relative` of its values exceeds this number.
 inline constexpr double kFarFromSource = 0.2;
 
-/// A source in another format. Tables that the format holds are kept entry by entry; others are sampled at
-/// its nodes: half/difference cells 90 x 90 x 180 (MERL, slices), angle cells 90 x 90 x 180 (MBSDF),
-/// zemax_layout, utia_layout, RglOptions{}, cells of a tensor tree (32 along an axis of its own squares,
-/// fewer below 64 `cells`; cubes of values within 0.1 % become one). Isotropic formats get the azimuth's mean
-/// of anisotropic sources, those with one side of the plane of incidence or of the exchange of directions the
-/// mean of both. Scattered formats keep scattered samples; of other sources they get the table's entries, if
-/// asked for, or samples drawn by `measure`. Where values were sampled anew, a loss states how far they are (a
-/// warning too above kFarFromSource): the figure `relative` of metrics/error_figures.h over 2,000 drawn pairs.
-/// Throws Error, naming the source, for an unknown format, cells outside [2, 1000], "model" and "burnish" of a
-/// source that is no model, channels that the format has not, or entries of a source without any.
+/// Converts a source to another format. Tables that the format can hold are kept entry by entry. Other sources
+/// are sampled at the nodes of the format:
+/// - MERL and slices: 90 x 90 x 180 half/difference cells;
+/// - MBSDF: 90 x 90 x 180 angle cells;
+/// - Zemax, UTIA, RGL: the nodes of zemax_layout, utia_layout and RglOptions{};
+/// - tensor tree: cells, 32 along each axis of its squares, fewer below 64 `cells`; cubes whose values agree
+///   within 0.1 % become one.
+///
+/// Isotropic formats get the azimuth's mean of anisotropic sources. Formats that hold one side of the plane of
+/// incidence, or one order of the two directions, get the mean of both. Scattered formats keep scattered
+/// samples. From other sources they get samples drawn by `measure`, or the table's entries if the options say
+/// so.
+///
+/// If values were sampled anew, a loss states how far they are from the source, and above kFarFromSource a
+/// warning does too: the figure `relative` of metrics/error_figures.h over 2,000 drawn pairs. Throws Error,
+/// naming the source, for an unknown format or cells outside [2, 1000]. Throws it too if the format is "model"
+/// or "burnish" and the source is no model. Throws it for channels that the format cannot hold, and for
+/// entries of a source that has none.
 Converted convert(const Source& source, std::string_view format, const ConvertOptions& options = {});
 
-/// Whether table_entries has an answer.
+/// Returns true if table_entries can read the source's entries.
 bool has_entries(const Source& source) noexcept;
 
-/// Every entry of a table that is no hole, both directions above the horizon; see ConvertOptions::entries.
-/// Throws Error, naming the source, if it is no table.
+/// Returns every known entry of a table with both directions above the horizon, see ConvertOptions::entries.
+/// Throws Error, naming the source, if the source is no table.
 Samples table_entries(const Source& source);
 
 }  // namespace burnish

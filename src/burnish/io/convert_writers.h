@@ -7,8 +7,8 @@
 
 namespace burnish {
 
-/// Writers of convert, for the rows of formats.cpp. They get what the source's file says more (`losses`), and add what
-/// the format says less. Throw Error where the format cannot hold the source.
+/// Writers of convert, for the rows of formats.cpp. `losses` lists what the source's file holds and the format has no
+/// place for; each writer adds what else is lost. They throw Error if the format cannot hold the source.
 using Losses = std::vector<std::string>;
 Converted write_merl(const Source& source, const ConvertOptions& options, Losses losses);
 Converted write_utia(const Source& source, const ConvertOptions& options, Losses losses);

@@ -8,14 +8,14 @@
 
 namespace burnish {
 
-/// True if the first line that is no comment is "type bsdf_data".
+/// Returns true if the first line that is no comment is "type bsdf_data".
 bool looks_like_fred(std::string_view text) noexcept;
 
-/// Scattered samples in the text format of FRED's tabulated scatter models: "type bsdf_data", a line
-/// "format angles=deg bsdf=value scale=1" (angles may be rad), then a line of theta and phi for each specular
-/// direction and under it lines of theta, phi and value. The specular direction is where a mirror sends the light, so
-/// the light comes from phi + 180 degrees. Isotropic, grey. Throws Error on anything else, directions below the
-/// horizon included. Source: [Photon Engineering 2024].
+/// Reads scattered samples in the text format of FRED's tabulated scatter models. A file has "type bsdf_data", then a
+/// line "format angles=deg bsdf=value scale=1" (angles may be rad). Each specular direction has a line of theta and
+/// phi, and under it lines of theta, phi and value. The specular direction is the one into which a mirror sends the
+/// light, so the light comes from phi + 180 degrees. Samples are isotropic and grey. Throws Error on anything else,
+/// directions below the horizon included. Source: [Photon Engineering 2024].
 SampleFile parse_fred(const FileBytes& file, const OpenOptions& options);
 
 }  // namespace burnish

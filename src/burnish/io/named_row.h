@@ -15,16 +15,17 @@ struct NamedRow {
   std::vector<float> numbers;
 };
 
-/// What a file's rows are, for errors.
+/// The kind of a file's rows, for error messages.
 struct NamedRowKind {
-  std::size_t count;         ///< of numbers
-  std::string_view number;   ///< what one is called, such as "weight"
-  std::string_view a_row;    ///< what a row is, such as "encoding"
-  std::string_view address;  ///< how one of several is named, such as "nbrdf:FILE#NAME"
+  std::size_t count;         ///< count of the numbers in a row
+  std::string_view number;   ///< name of one number, such as "weight"
+  std::string_view a_row;    ///< name of a row, such as "encoding"
+  std::string_view address;  ///< address of one row of several, such as "nbrdf:FILE#NAME"
 };
 
-/// The row named `name`, or the only one where `name` is empty. Throws Error if a row up to it is anything
-/// else, if there is no such row (the message lists names), or if there are several and `name` is empty.
+/// Returns the row named `name`, or the only row if `name` is empty. Throws Error if a row up to it is
+/// anything else. Throws Error if there is no such row (the message lists names), or if there are several and
+/// `name` is empty.
 NamedRow parse_named_row(const FileBytes& file, std::string_view name, const NamedRowKind& kind);
 
 }  // namespace burnish

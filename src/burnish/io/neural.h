@@ -16,13 +16,13 @@ struct NeuralFile {
   Findings findings;
 };
 
-/// True if the first line holds as many commas as a name and the weights of a NeuralBrdf need.
+/// Returns true if the first line holds as many commas as a name and the weights of a NeuralBrdf need.
 bool looks_like_neural(std::string_view text) noexcept;
 
-/// One encoding of a CSV file whose rows are a name and NeuralBrdf::kWeights weights. The row is the one
-/// named `name`, or the only one where `name` is empty. Throws Error if a row up to it is anything else, if
-/// there is no such row (the message lists names), or if there are several and `name` is empty. Layout:
-/// [Sztrajman 2021].
+/// Reads one encoding of a CSV file whose rows are a name and NeuralBrdf::kWeights weights. The row is the
+/// one named `name`, or the only one if `name` is empty. Throws Error if a row up to it is anything else.
+/// Throws Error if there is no such row (the message lists names), or if there are several and `name` is
+/// empty. Layout: [Sztrajman 2021].
 NeuralFile parse_neural(const FileBytes& file, std::string_view name = {});
 
 }  // namespace burnish

@@ -10,20 +10,22 @@
 
 namespace burnish {
 
-/// Returns the place among a file's `blocks`, at least one, of the one that is read.
-/// - The part is the one asked for, else a reflection where there is one, the front's first (the back's with
-///   OpenOptions::back_side), else the transmission, the front's first.
-/// - The band is the one asked for, in any case, else the visible one (Visible, CIE-Y, one without a name), else the
-///   first; of several parts one that has the band.
-/// Throws Error in one line, naming what there is, where the file has not what is asked for.
+/// Returns the index in `blocks`, which holds at least one, of the block to read.
+/// - The part is the requested one. Without a request, it is a reflection if there is one, the front's first (the
+///   back's with OpenOptions::back_side), and otherwise the transmission, the front's first.
+/// - The band is the requested one, in any case. Without a request, it is the visible one (Visible, CIE-Y, one
+///   without a name), and otherwise the first. If several parts remain, one that has the band is read.
+///
+/// Throws Error in one line, naming the blocks of the file, if the file lacks the requested part or band.
 std::size_t choose_block(const std::string& file, std::span<const BsdfBlock> blocks,
                          const OpenOptions& options);
 
-/// Throws Error, naming the part there is, where the options ask for a part or a band that a source of a format without
-/// a choice is not.
+/// Checks the options for a format without a choice. Throws Error, naming the part of the source, if they request
+/// another part or band.
 void check_block(const std::string& file, const Findings& findings, const OpenOptions& options);
 
-/// Notes the blocks of a file and the one that was read. A transmission that nobody asked for is a warning.
+/// Notes the blocks of a file and the one that was read. A transmission that the options did not request is a
+/// warning.
 void note_blocks(std::span<const BsdfBlock> blocks, std::size_t chosen, const OpenOptions& options,
                  Findings& findings);
 

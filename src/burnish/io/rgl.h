@@ -17,17 +17,17 @@ struct RglFile {
   Findings findings;
 };
 
-/// True where `head`, the first bytes of a file, starts a tensor file.
+/// Returns true if `head`, the first bytes of a file, starts a tensor file.
 bool looks_like_rgl(std::span<const std::byte> head) noexcept;
 
 /// Reads a tensor file with the fields of the RGL material database [Dupuy 2018]: isotropic or anisotropic,
 /// RGB or spectral. Spectra become linear Rec. 709 under options.illuminant unless options.keep_spectral.
-/// Negative values that remain are kept and counted. Throws Error for
-/// what parse_tensor_file and RglTable refuse, a missing field, or one of another type or shape.
+/// Negative values that remain are kept and counted. Throws Error as parse_tensor_file and RglTable do, and
+/// for a field that is missing or has another type or shape.
 RglFile parse_rgl(const FileBytes& file, const OpenOptions& options);
 
-/// The file that holds `table`; reading it back gives the same values to the last bit. A grey table is
-/// written as RGB.
+/// Returns the file that holds `table`; reading it back gives the same values to the last bit. A grey table
+/// is written as RGB.
 std::string format_rgl(const RglTable& table);
 
 }  // namespace burnish

@@ -7,17 +7,19 @@
 
 namespace burnish {
 
-/// Warns where, at most incidences, the largest value lies near phi_o = phi_i and is twice what the other side has:
-/// the file may count azimuths the other way, or the material sends light back. Incidences of fewer than eight samples
-/// are passed over.
+/// Warns if, at most incidences, the largest value lies near phi_o = phi_i and is twice the largest value of the other
+/// side. The file may then count azimuths the other way, or the material sends light back. Incidences of fewer than
+/// eight samples are passed over.
 void check_azimuths(const Samples& samples, Findings& findings);
 
-/// Of samples at several phi_i, of which the file does not say whether they are isotropic: sets what predicts samples by
-/// each other better, see isotropy_errors. One sentence says why. Fewer than two dozen stay anisotropic.
+/// Decides whether samples at several phi_i are isotropic, if the file does not say so. Takes the symmetry under which
+/// samples predict each other better, see isotropy_errors. Fewer than two dozen samples stay anisotropic. Returns one
+/// sentence with the reason.
 std::string settle_isotropy(Samples& samples);
 
-/// Of samples in the plane of incidence, read as if both polar angles were counted towards one side: turns all wo by
-/// half a circle where the largest values lie at theta_o = theta_i. One sentence says where the mirror direction is.
+/// Decides the sign of polar angles of samples in the plane of incidence, read as if both were counted towards one
+/// side. Turns all wo by half a circle if the largest values lie at theta_o = theta_i. Returns one sentence that
+/// states the mirror direction.
 std::string settle_plane(Samples& samples);
 
 }  // namespace burnish

@@ -6,8 +6,9 @@
 
 namespace burnish {
 
-/// The same text in UTF-8, under the same name, of a file in UTF-16 with a byte order mark at its front, as
-/// spreadsheets write it; nothing of any other file, and where a half of a pair stands alone or a character is 0.
+/// Converts a file in UTF-16 with a byte order mark at its front, as spreadsheets write it, to the same text in
+/// UTF-8 under the same name. Returns nothing for any other file, for half a surrogate pair and for a character
+/// 0.
 std::optional<FileBytes> from_utf16(const FileBytes& file);
 
 }  // namespace burnish
