@@ -13,18 +13,19 @@ namespace burnish {
 
 namespace {
 
-// What rounding of a file's digits may take a direction out of the hemisphere: 1.5708 is 3.7e-6 beyond it.
+// Rounding of a file's digits may take a direction this far out of the hemisphere: 1.5708 is 3.7e-6 beyond
+// it.
 constexpr double kSlack = 1e-5;
 
 using Coordinates = std::span<const double>;
 
-/// ALTA's difference vector is the view's, ours the light's.
+/// Returns the pair of these angles. ALTA's difference vector is the view's, burnish's is the light's.
 DirectionPair rusinkiewicz(double theta_h, double phi_h, double theta_d, double phi_d) noexcept {
   const auto [difference, other] = from_half_diff({theta_h, phi_h, theta_d, phi_d});
   return {other, difference};
 }
 
-/// Direction at the length of (x, y) from the normal, towards (x, y).
+/// Returns the direction towards (x, y) whose angle from the normal is the length of (x, y).
 Vec3 projected(double x, double y) noexcept {
   return spherical_direction(std::hypot(x, y), std::atan2(y, x));
 }
@@ -41,14 +42,15 @@ DirectionPair projected_view(Coordinates x) noexcept {
   return {spherical_direction(x[0], 0), projected(x[1], x[2])};
 }
 
-/// The view is the light's mirror direction reflected about the back vector.
+/// Returns the pair whose view is the light's mirror direction reflected about the back vector.
 DirectionPair schlick(Coordinates x) noexcept {
   const Vec3 light = spherical_direction(x[0], 0), mirror{-light.x, -light.y, light.z};
   const Vec3 back = projected(x[1], x[2]);
   return {light, 2 * dot(mirror, back) * back - mirror};
 }
 
-/// The view at an angle from the light, its azimuth around the light counted from the normal.
+/// Returns the pair whose view lies at an angle from the light. The view's azimuth around the light counts
+/// from the normal.
 DirectionPair retro(Coordinates x) noexcept {
   const Vec3 light = spherical_direction(x[0], 0), to_normal{-light.z, 0, light.x}, across{0, 1, 0};
   const double angle = std::hypot(x[1], x[2]), azimuth = std::atan2(x[2], x[1]);
@@ -56,17 +58,18 @@ DirectionPair retro(Coordinates x) noexcept {
   return {light, std::cos(angle) * light + std::sin(angle) * tangent};
 }
 
-/// |H| in the tangent plane, |B| and the azimuth between them, of H = (L + V) / 2 and B = (L - V) / 2.
+/// Returns the pair of |H| in the tangent plane, |B| and the azimuth between them. H = (L + V) / 2, B = (L -
+/// V) / 2.
 DirectionPair stark(Coordinates x) noexcept {
   const Vec3 half{x[0], 0, std::sqrt(std::max(1 - x[0] * x[0] - x[1] * x[1], 0.0))};
-  // B is orthogonal to H
+  // B is orthogonal to H.
   const double theta = std::atan2(-half.z, x[0] * std::cos(x[2]));
   const Vec3 back =
       x[1] * Vec3{std::sin(theta) * std::cos(x[2]), std::sin(theta) * std::sin(x[2]), std::cos(theta)};
   return {half + back, half - back};
 }
 
-/// The same with B in the tangent plane too.
+/// Returns the pair of |H| and |B|, both in the tangent plane, and the azimuth between them.
 DirectionPair neumann(Coordinates x) noexcept {
   const auto raised = [](double a, double b) {
     return Vec3{a, b, std::sqrt(std::max(1 - a * a - b * b, 0.0))};
@@ -87,7 +90,7 @@ DirectionPair cartesian(Coordinates x) noexcept {
   return {{x[3], x[4], x[5]}, {x[0], x[1], x[2]}};
 }
 
-/// What the coordinates of a row are.
+/// A kind of coordinates in a row.
 struct Parameterization {
   std::string_view name;
   std::size_t coordinates;
@@ -149,7 +152,7 @@ void read_key(TextReader& reader, Header& header) {
     if (out == "ENERGY" || out == "XYZ_COLOR")
       reader.fail("#PARAM_OUT INV_STERADIAN, INV_STERADIAN_COSINE_FACTOR or RGB_COLOR", in_quotes(out));
   } else if (key == "#VS") {
-    // 0, 1 or 2 numbers more for each value
+    // Each value has 0, 1 or 2 more numbers.
     for (std::string_view word = reader.word(); !word.empty(); word = reader.word()) {
       if (word != "0" && word != "1" && word != "2") reader.fail("#VS of 0, 1 or 2", in_quotes(word));
       header.extra += static_cast<std::size_t>(word[0] - '0');
@@ -163,7 +166,7 @@ void read_key(TextReader& reader, Header& header) {
   }
 }
 
-/// The header; the reader stands at the first row.
+/// Reads the header and leaves the reader at the first row.
 Header read_header(TextReader& reader) {
   Header header;
   bool row = false;
@@ -183,7 +186,8 @@ Header read_header(TextReader& reader) {
   return header;
 }
 
-/// A direction of the upper hemisphere; what rounding took below the horizon is put onto it.
+/// Returns a direction of the upper hemisphere. A direction that rounding took below the horizon is put onto
+/// it. Throws Error for any other.
 Vec3 checked(const TextReader& reader, Vec3 w) {
   if (!(std::abs(length(w) - 1) < 1e-3 && w.z >= -kSlack))
     reader.fail("coordinates of two directions of the upper hemisphere",
@@ -227,7 +231,7 @@ SampleFile parse_alta(const FileBytes& file, const OpenOptions& options) {
     const DirectionPair pair = header.parameterization->directions(coordinates);
     const Vec3 wi = checked(reader, pair.wi), wo = checked(reader, pair.wo);
     if (header.cosine && wo.z <= kSlack) {
-      // 0 / 0: no value of f_r
+      // 0 / 0 gives no value of f_r.
       ++findings.hole_count;
       continue;
     }

@@ -30,7 +30,7 @@ std::vector<std::string> variable_names(std::string_view line) {
   return names;
 }
 
-/// Words left in the current line.
+/// Returns the number of words left in the current line.
 std::size_t words_left(TextReader reader) noexcept {
   std::size_t count = 0;
   while (!reader.word().empty()) ++count;
@@ -39,15 +39,15 @@ std::size_t words_left(TextReader reader) noexcept {
 
 constexpr std::array<std::string_view, 4> kAngles = {"theta_i", "phi_i", "theta_s", "phi_s"};
 
-/// Where each thing stands in a row.
+/// The place of each quantity in a row.
 struct AstmColumns {
-  std::array<std::size_t, 4> angle{};  // of kAngles
+  std::array<std::size_t, 4> angle{};  // columns of kAngles
   std::vector<std::size_t> values;
-  std::vector<double> lambda_nm;  // of the values, or empty
-  std::optional<ValueKind> kind;  // what the first name says
+  std::vector<double> lambda_nm;  // wavelengths of the values, or empty
+  std::optional<ValueKind> kind;  // the kind that the first name states
 };
 
-/// What a name such as "CCBRDF" or "Red BRDF" says of the values.
+/// Returns the kind of values that a name such as "CCBRDF" or "Red BRDF" states.
 std::optional<ValueKind> kind_of_column(std::string_view name) {
   const std::string lower = lower_case(name);
   if (const auto kind = kind_of_name(lower)) return kind;
@@ -102,7 +102,7 @@ SampleFile parse_astm(const FileBytes& file, const OpenOptions& options) {
   findings.format = "ASTM E1392 text";
   findings.conventions = {"Angles in radians; theta_i, phi_i to the light, theta_s, phi_s to the viewer."};
 
-  // some files forget a name: the rows tell
+  // Some files forget a name: the rows show it.
   const std::string vars_line(reader.line());
   bool rows = reader.next_content_line();
   const bool forgotten = std::find(names.begin(), names.end(), kAngles[3]) == names.end();

@@ -37,19 +37,20 @@ namespace {
 
 constexpr std::size_t kComparedPairs = 2000;
 constexpr double kFloor = 1e-3;       // as in error_figures.h
-constexpr double kReciprocal = 1e-6;  // asymmetry that is rounding
+constexpr double kReciprocal = 1e-6;  // an asymmetry up to this is rounding
 constexpr std::size_t kMirrorPairs = 500;
-constexpr double kTreeTolerance = 1e-3;  // of cubes that become one
-constexpr double kGrey_nm = 555;         // where a format of spectra has grey
+constexpr double kTreeTolerance = 1e-3;  // relative; cubes whose values agree within it become one
+constexpr double kGrey_nm = 555;         // wavelength of grey in a format of spectra
 
-/// A source with the plane of incidence as its mirror: the other side's values.
+/// A source mirrored in the plane of incidence: it has the values of the other side.
 struct OtherSide {
   BrdfRef source;
 
   std::size_t channels() const noexcept { return source.channels(); }
   bool isotropic() const noexcept { return source.isotropic(); }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-    // an isotropic source sees both sides exchanged where both directions are reflected at any one plane
+    // An isotropic source has its sides exchanged if both directions are reflected at any one plane through
+    // the normal.
     return source.eval({wi.x, -wi.y, wi.z}, {wo.x, -wo.y, wo.z}, f);
   }
 };
@@ -69,7 +70,7 @@ struct Luminance {
   }
 };
 
-/// Each value three times.
+/// Returns the table with each value three times.
 AngleTable in_three_channels(const AngleTable& grey) {
   AngleTable table = grey;
   table.channel_count = 3;
@@ -78,7 +79,7 @@ AngleTable in_three_channels(const AngleTable& grey) {
   return table;
 }
 
-/// The figure `relative` over pairs that both know; nothing if there are none.
+/// Returns the figure `relative` over the pairs that both sides know; nothing if there are none.
 std::optional<double> relative_difference(BrdfRef a, BrdfRef b, std::size_t count) {
   const auto channels_a = a.channels(), channels_b = b.channels();
   const std::vector<DirectionPair> pairs = draw_pairs(count, 1, a.isotropic() && b.isotropic());
@@ -103,7 +104,7 @@ std::optional<double> relative_difference(BrdfRef a, BrdfRef b, std::size_t coun
   return std::expm1(sum / static_cast<double>(terms));
 }
 
-/// Whether the channels differ in a pair.
+/// Returns true if the channels differ at any pair.
 bool has_colour(BrdfRef brdf) {
   const auto channels = brdf.channels();
   if (channels == 1) return false;
@@ -120,14 +121,15 @@ bool has_colour(BrdfRef brdf) {
   return false;
 }
 
-/// Whether the description is the file's own words: of MERL and UTIA, which have none, it is ours.
+/// Returns true if the description is in the file's own words. MERL and UTIA files have none, so theirs is
+/// burnish's.
 bool has_own_remark(const Source& source) {
   const auto* angles = std::get_if<AngleTable>(&source.brdf);
   return is_measurement(source) && !std::holds_alternative<HalfDiffTable>(source.brdf) &&
          !(angles && fits_utia(*angles));
 }
 
-/// Comments that are left behind, in quotes and shortened.
+/// Returns the comments that are left behind, in quotes and shortened.
 std::string named_comments(const std::vector<std::string>& comments) {
   constexpr std::size_t kMost = 12, kLongest = 60;
   std::string text = comments.size() == 1 ? "the comment" : fmt::format("{} comments:", comments.size());
@@ -136,7 +138,8 @@ std::string named_comments(const std::vector<std::string>& comments) {
   return comments.size() > kMost ? text + fmt::format(" and {} more", comments.size() - kMost) : text;
 }
 
-/// Which samples have both directions so far above the horizon that a reader sees them there.
+/// Returns the places of samples whose directions are both so far above the horizon that a reader accepts
+/// them.
 std::vector<std::size_t> above_horizon(const Samples& samples) {
   constexpr double kMinCosine = 1e-9;
   std::vector<std::size_t> above;
@@ -179,14 +182,14 @@ class Converter {
                            fmt::format("{} channels", channels));
   }
 
-  /// The source, or its mean over the azimuth.
+  /// Returns the source, or its mean over the azimuth.
   BrdfRef isotropic() {
     if (brdf_.isotropic()) return brdf_;
     lose("anisotropy averaged over {} azimuths", AzimuthMean::kTurns);
     return mean_;
   }
 
-  /// Says what a format with one of two exchanged directions averages.
+  /// Notes the asymmetry that a format averages because it holds one order of the two directions.
   void lose_asymmetry(BrdfRef brdf) {
     if (const double error = reciprocity_error(brdf, kMirrorPairs, 1).mean; error > kReciprocal)
       lose("directions exchanged averaged (asymmetry {:.3g} %)", 100 * error);
@@ -212,10 +215,10 @@ class Converter {
     return sampled(where, std::move(bytes), brdf_);
   }
 
-  /// The bytes, and how far from `brdf` they are.
+  /// Returns the converted bytes, and notes how far they are from `brdf`.
   Converted sampled(const std::string& where, std::string bytes, BrdfRef brdf) {
     if (source_.samples()) lose("scattered samples interpolated");
-    // read back, as another program would
+    // The bytes are read back, as another program would read them.
     const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
     const Source back = parse_source({"converted", {data, data + bytes.size()}},
                                      {.keep_spectral = !source_.findings.lambda_nm.empty()});
@@ -233,7 +236,7 @@ class Converter {
     return fmt::format("{0} x {0} x {1} {2} cells", options_.cells, 2 * options_.cells, kind);
   }
 
-  /// What the source calls itself, or its file's name without folders.
+  /// Returns the name that the source has in its file, or its file's name without folders.
   std::string sample_name() const {
     return source_.findings.description.empty() ? std::filesystem::path(source_.name).filename().string()
                                                 : source_.findings.description;
@@ -247,22 +250,23 @@ class Converter {
             .resampled = resampled_};
   }
 
-  /// The part that the source is; a format without sides has front ones.
+  /// Returns the part of the source; in a format without sides it is a front one.
   BsdfPart part() const { return source_.findings.block.value_or(BsdfBlock{}).part; }
 
-  /// The block of a window system's file that the source came from. Others become Radiance's front in the visible
-  /// spectrum, as the luminance of a colour does.
+  /// Returns the block of a window system's file that the source came from. Other sources become Radiance's
+  /// front. They stand in the visible spectrum, as the luminance of a colour does.
   BsdfBlock window_block() const {
     BsdfBlock block = source_.findings.block.value_or(BsdfBlock{BsdfPart::reflection_back, {}});
     if (block.band.empty() || block.band == kColourBand) block.band = "Visible";
     return block;
   }
 
-  /// Half/difference cells of the source, one value for directions exchanged unless they cover the circle.
+  /// Samples the source at half/difference cells. Both orders of directions have one value unless cells cover
+  /// the circle.
   HalfDiffTable half_diff_cells() {
     const BrdfRef brdf = isotropic();
     const int n = options_.cells;
-    // 360 azimuths would be the full circle
+    // 360 azimuths would be the full circle.
     if (2 * n == 360) return tabulate_half_diff(brdf, n, n, 2 * n, true);
     lose_asymmetry(brdf);
     if (!brdf_.isotropic()) return tabulate_half_diff(AzimuthMean(brdf_, true), n, n, 2 * n, false);
@@ -314,7 +318,7 @@ class Converter {
     const std::string sample = sample_name();
     const auto* table = std::get_if<AngleTable>(&source_.brdf);
     if (table && fits_zemax(*table)) {
-      // nothing else has a table of this frame
+      // No other format has a table of this frame.
       const bool told_apart = std::ranges::any_of(source_.findings.warnings, [](const std::string& warning) {
         return warning.find("TIS says") != std::string::npos;
       });
@@ -349,7 +353,7 @@ class Converter {
       return kept(format_tensor_tree(*tree, sample_name(), window_block()));
     const Luminance grey{brdf_};
     if (has_colour(brdf_)) lose("colour: its luminance is kept");
-    // half the cells along a polar angle, a power of two
+    // An axis has half the cells of a polar angle, rounded down to a power of two from 2 to 32.
     int depth = 1;
     while (depth < 5 && 4 << depth <= options_.cells) ++depth;
     const int along = 1 << depth;
@@ -360,7 +364,7 @@ class Converter {
 
   Converted openmaterial() {
     require_grey_or_rgb_or_spectra();
-    // samples as they are but for their orientation, a table's entries, or draws
+    // The samples are the source's without their orientation, the entries of its table, or draws.
     std::optional<Samples> made;
     const Samples* samples = source_.samples();
     if (samples && !samples->isotropic) {
@@ -410,7 +414,7 @@ class Converter {
   }
 
   Converted scattered(bool astm) {
-    // samples as they are, a table's entries, or draws
+    // The samples are the source's, the entries of its table, or draws.
     std::optional<Samples> made;
     const Samples* samples = source_.samples();
     if (!samples && options_.entries) {
@@ -441,7 +445,7 @@ class Converter {
   bool resampled_ = false;
 };
 
-/// Collects what is known above the horizon.
+/// Collects the values that are known above the horizon.
 class EntryList {
  public:
   explicit EntryList(BrdfRef brdf) : brdf_(brdf), f_(brdf.channels()) {
@@ -461,7 +465,7 @@ class EntryList {
   Samples samples_;
 };
 
-// Every entry of a table that holds something.
+// Adds every known entry of a table.
 void add_entries(const HalfDiffTable& table, EntryList& list) {
   for (int h = 0; h < table.theta_h_count; ++h)
     for (int d = 0; d < table.theta_d_count; ++d)
@@ -525,7 +529,7 @@ Samples table_entries(const Source& source) {
 
 namespace {
 
-/// What the source's file says and no file of this format has a place for.
+/// Returns what the source's file holds and files of this format have no place for.
 Losses left_behind(const Source& source, const Format& format) {
   const Findings& found = source.findings;
   Losses losses;

@@ -10,7 +10,8 @@ namespace burnish {
 
 namespace {
 
-/// Moves to the next line with content if the current one has no word left; numbers may wrap over lines.
+/// Returns the next number, on the next line with content if the current one has no word left. Numbers may
+/// wrap over lines.
 double wrapped_number(TextReader& reader, std::string_view what) {
   for (;;) {
     const std::string_view word = reader.word();
@@ -29,7 +30,7 @@ Vec3 direction(TextReader& reader, std::string_view theta_name, std::string_view
   return spherical_direction(theta, wrapped_number(reader, phi_name));
 }
 
-/// The first comment lines are the material's name and remarks.
+/// Joins the first comment lines, which are the material's name and remarks.
 std::string remarks(const FileBytes& file) {
   std::string joined;
   TextReader reader(file);
@@ -68,7 +69,7 @@ SampleFile parse_cornell(const FileBytes& file, const OpenOptions& options) {
 
   samples.channels = bands;
   samples.isotropic = true;
-  const std::size_t shortest_row = 2 * (4 + bands);  // a digit and a separator a number
+  const std::size_t shortest_row = 2 * (4 + bands);  // a number takes a digit and a separator
   samples.values.reserve(reader.remaining() / shortest_row / 4 * bands);
   while (reader.next_content_line()) {
     const Vec3 wi = direction(reader, "theta_i", "phi_i");

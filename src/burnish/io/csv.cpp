@@ -21,9 +21,9 @@ namespace {
 constexpr std::array<std::string_view, 6> kVectorNames = {"wi_x", "wi_y", "wi_z", "wo_x", "wo_y", "wo_z"};
 constexpr std::array<std::string_view, 3> kTexelNames = {"texel_x", "texel_y", "held_out"};
 constexpr std::size_t kMaxPreamble = 1 << 16;  // bytes before a header
-constexpr double kLargestOfRadians = 3.2;      // degrees: a hemisphere's angles in radians stay below
+constexpr double kLargestOfRadians = 3.2;      // angles of a hemisphere in radians stay below
 
-/// What a comment says about the material.
+/// The symmetry of the material that a comment states.
 enum class Tag { none, isotropic, anisotropic };
 
 bool is_comment(std::string_view line) noexcept {
@@ -36,13 +36,13 @@ void read_tag(std::string_view comment, Tag& tag) {
   if (remark == "anisotropic") tag = Tag::anisotropic;
 }
 
-/// A line that starts with a number can be no header, and ends the search for one.
+/// Returns true if a line starts with a number. Such a line is no header, and ends the search for one.
 bool starts_with_number(std::string_view line) {
   const std::string_view word = line.substr(0, line.find_first_of(" \t,;"));
   return parse_number(word).has_value();
 }
 
-/// Whether a row has a cell for each name: a comment may speak of columns that are none.
+/// Returns true if a row has a cell for each name. A comment may name columns that the table does not have.
 bool fits(const CsvHeader& header, std::string_view row) {
   const std::vector<std::string_view> names = split_names(header.line, header.separator);
   std::vector<std::string_view> cells;
@@ -53,16 +53,16 @@ bool fits(const CsvHeader& header, std::string_view row) {
   return false;
 }
 
-/// What stands before a table's rows.
+/// The lines in front of a table's rows.
 struct Preamble {
   std::optional<CsvHeader> header;
-  std::string remarks;    // lines before it that are no comments, joined
-  bool says_brf = false;  // they speak of reflectance factors
+  std::string remarks;    // lines before the header that are no comments, joined
+  bool says_brf = false;  // remarks name reflectance factors
   Tag tag = Tag::none;
 };
 
-/// Moves the reader to the header, or to the line before the rows where a comment is it. A header that is none
-/// wins over a comment that looks like one.
+/// Moves the reader to the header, or to the line before the rows if the header is a comment. A header that is
+/// no comment wins over a comment that looks like one.
 Preamble read_preamble(TextReader& reader) {
   Preamble found;
   const std::size_t size = reader.remaining();
@@ -111,7 +111,7 @@ class Rows {
     const std::string_view line = trimmed(reader_.line());
     split(line, separator_);
     if (first_ && cells_.size() != columns_.count)
-      // a row may be separated otherwise than the names
+      // A row may have another separator than the names.
       for (const char other : {';', '\t', ',', ' '}) {
         split(line, other);
         if (cells_.size() != columns_.count) continue;
@@ -170,7 +170,7 @@ DirectionPair read_pair(const TextReader& reader, const CsvColumns& columns, Row
   return {spherical_direction(at[0], at[1]), spherical_direction(at[2], at[3])};
 }
 
-/// Moves to the next line with content; false at the end of the file. Comments may have a tag.
+/// Moves to the next line with content; returns false at the end of the file. Comments may have a tag.
 bool next_row(TextReader& reader, Tag& tag) {
   while (reader.next_line()) {
     const std::string_view line = trimmed(reader.line());
@@ -181,7 +181,7 @@ bool next_row(TextReader& reader, Tag& tag) {
   return false;
 }
 
-/// Spectra of rows that are of one wavelength each, by their directions, in the order in which these come.
+/// Collects spectra from rows of one wavelength each. Directions stay in the order in which they come.
 class SpectraOfRows {
  public:
   void add(const TextReader& reader, const DirectionPair& pair, double lambda, double value) {
@@ -199,14 +199,15 @@ class SpectraOfRows {
       reader.fail(fmt::format("at most {} wavelengths", kMaxFileChannels), in_quotes(reader.line()));
   }
 
-  /// Whole spectra as samples. Wavelengths of a column whose name has no unit are micrometres where all are small.
+  /// Turns whole spectra into samples. Wavelengths of a column without a unit are micrometres if all of them are
+  /// small.
   void finish(std::optional<double> to_nm, Samples& samples, Findings& findings) const {
     constexpr double kLargestMicrometre = 50;
     const bool small = !bands_.empty() && bands_.rbegin()->first < kLargestMicrometre;
     if (!to_nm && small)
       findings.conventions.push_back("Wavelengths were taken as micrometres: all are small.");
     const double factor = to_nm.value_or(small ? 1e3 : 1);
-    // to the digits of a metre's decimal fraction
+    // Wavelengths are rounded to the digits of a metre's decimal fraction.
     for (const auto& [lambda, rows] : bands_)
       findings.lambda_nm.push_back(std::round(lambda * factor * 1e6) / 1e6);
     samples.channels = bands_.size();
@@ -241,7 +242,7 @@ void refuse_unknown(const TextReader& reader, const CsvColumns& columns) {
     reader.fail("known columns", fmt::format("{}, unknown", in_quotes(columns.unknown.front())));
 }
 
-/// Names in quotes, at most four.
+/// Returns names in quotes, at most four.
 std::string some_of(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 4;
   std::string text;

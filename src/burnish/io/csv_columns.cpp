@@ -12,7 +12,7 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kMaxHeader = 1 << 16;  // bytes of a line of names
+constexpr std::size_t kMaxHeader = 1 << 16;  // bytes of the line of names
 
 template <std::size_t n>
 bool among(const std::array<std::string_view, n>& names, std::string_view name) noexcept {
@@ -24,12 +24,12 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
     text.replace(at, from.size(), to);
 }
 
-/// A column's name in the words of this file: lower case, '_' between them, its unit apart.
+/// A column's name in this file's words: lower case, '_' between them, its unit apart.
 struct ColumnName {
   std::string name, unit;
 };
 
-// the sign of degrees in UTF-8 and Latin-1, and what is often taken for it
+// Degrees have their sign in UTF-8 or Latin-1, or the ordinal sign that is often taken for it.
 constexpr std::array<std::string_view, 7> kDegrees = {"deg",      "degs", "degree",  "degrees",
                                                       "\xc2\xb0", "\xb0", "\xc2\xba"};
 constexpr std::array<std::string_view, 4> kRadians = {"rad", "rads", "radian", "radians"};
@@ -41,16 +41,16 @@ ColumnName plain_name(std::string_view cell) {
         std::pair{"\xce\xbb", "lambda"}, std::pair{"\xc2\xb5m", "um"}, std::pair{"\xce\xbcm", "um"}})
     replace_all(text, letter, word);
   ColumnName result;
-  // a unit in brackets at the end
+  // A unit in brackets may stand at the end.
   if (!text.empty() && (text.back() == ')' || text.back() == ']' || text.back() == '}')) {
     const std::size_t open = text.find_last_of("([{");
-    // but for the angle of a cosine
+    // The angle of a cosine is no unit.
     if (open != std::string::npos && open > 0 && !text.substr(0, open).ends_with("cos")) {
       result.unit = trimmed(std::string_view(text).substr(open + 1, text.size() - open - 2));
       text.erase(open);
     }
   }
-  // whatever parts words becomes '_'; a point between digits stays
+  // Every sign between words becomes '_'; a point between digits stays.
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     const bool point = c == '.' && i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
@@ -62,7 +62,7 @@ ColumnName plain_name(std::string_view cell) {
       result.name += '_';
   }
   while (!result.name.empty() && result.name.back() == '_') result.name.pop_back();
-  // a unit as the last word
+  // A unit may be the last word.
   const std::size_t last = result.name.rfind('_');
   if (result.unit.empty() && last != std::string::npos) {
     const std::string word = result.name.substr(last + 1);
@@ -74,7 +74,8 @@ ColumnName plain_name(std::string_view cell) {
   return result;
 }
 
-/// What a direction's column is. The names with s are the scattered direction's, or the source's beside a view.
+/// The role of a direction's column. Names with s are of the scattered direction, or of the source beside a
+/// view.
 enum class Role { theta_i, phi_i, theta_o, phi_o, theta_s, phi_s, theta, phi, turn, vector, none };
 
 constexpr std::array<std::string_view, 16> kIncident = {
@@ -92,7 +93,7 @@ constexpr std::array<std::string_view, 10> kTurns = {
 
 constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
 
-/// The place among wi_x ... wo_z of a vector's component.
+/// Returns the place of a vector's component among wi_x ... wo_z.
 std::optional<std::size_t> component_of(std::string_view name) {
   std::string text(name);
   text.erase(std::remove(text.begin(), text.end(), '_'), text.end());
@@ -116,7 +117,7 @@ Role role_of(std::string_view name) {
   if (among(kTurns, name)) return Role::turn;
   if (name == "theta") return Role::theta;
   if (name == "phi") return Role::phi;
-  // an angle's word and a side's, in either order
+  // A name has an angle's word and a side's, in either order.
   const auto role = [&](std::string_view angle, std::string_view side) {
     const bool polar = among(kPolar, angle);
     if (!polar && !among(kAround, angle)) return Role::none;
@@ -137,14 +138,14 @@ Role role_of(std::string_view name) {
   return Role::none;
 }
 
-/// What a column of values is.
+/// The parts of a value column's name.
 struct ValueName {
   std::optional<ValueKind> kind;
   std::optional<std::size_t> colour;  // 0, 1, 2: red, green, blue
   std::optional<double> lambda_nm;
 };
 
-constexpr double kLeast_nm = 50, kMost_nm = 1e6;  // of a bare number that is a wavelength
+constexpr double kLeast_nm = 50, kMost_nm = 1e6;  // range of bare numbers that are wavelengths
 
 std::optional<ValueName> wavelength_name(std::string_view name) {
   double scale = 1;
@@ -163,7 +164,7 @@ std::optional<ValueName> wavelength_name(std::string_view name) {
   std::string_view word = name.substr(0, digits);
   if (word.ends_with('_')) word.remove_suffix(1);
   ValueName found{.kind = kind_of_name(word), .colour = {}, .lambda_nm = *number * scale};
-  if (word == "value") {  // our own name, of any wavelength
+  if (word == "value") {  // burnish's own name, at any wavelength
     found.kind.reset();
     return found;
   }
@@ -173,7 +174,7 @@ std::optional<ValueName> wavelength_name(std::string_view name) {
   return found;
 }
 
-/// The factor to nanometres of a column of wavelengths, or nothing in `to_nm` where its name has no unit.
+/// A column of wavelengths and its factor to nanometres; `to_nm` is empty if its name has no unit.
 struct WavelengthColumn {
   std::optional<double> to_nm;
 };
@@ -201,7 +202,7 @@ std::optional<ValueName> value_name(std::string_view name) {
   if (name == "value" || name == "values" || name == "val") return ValueName{};
   if (const auto kind = kind_of_name(name)) return ValueName{.kind = kind, .colour = {}, .lambda_nm = {}};
   if (const auto spectral = wavelength_name(name)) return spectral;
-  // a colour, alone or beside a kind's word
+  // A colour stands alone or beside a kind's word.
   const auto colour = [](std::string_view word) -> std::optional<std::size_t> {
     for (std::size_t c = 0; c < 3; ++c)
       if (word == std::array{"r", "g", "b"}[c] || word == std::array{"red", "green", "blue"}[c]) return c;
@@ -219,7 +220,7 @@ std::optional<ValueName> value_name(std::string_view name) {
   return std::nullopt;
 }
 
-/// A line's names, sorted by what they are.
+/// Sorts a line's names by their meaning.
 class Sorter {
  public:
   Sorter(const TextReader& reader, const CsvHeader& header)
@@ -274,12 +275,12 @@ class Sorter {
       for (std::size_t k = 0; k < 6; ++k)
         if (!vector[k]) missing(kNames[k]);
       columns_.direction = vector;
-      // angles beside vectors say the same again
+      // Angles beside vectors repeat the same directions.
       for (const auto& [role, at] : found)
         if (at) used_[*at] = false;
       return;
     }
-    // s is the scattered direction, or the source's beside another outgoing one
+    // The letter s is the scattered direction, or the source's beside another outgoing one.
     const bool s_is_source = !found[Role::theta_i] && found[Role::theta_o];
     const auto give = [&](Role from, Role to) {
       if (!found[from]) return;
@@ -325,10 +326,10 @@ class Sorter {
   };
 
   void values() {
-    // f_r alone is a value, f_r with f_g and f_b a colour
+    // f_r alone is a value; f_r with f_g and f_b is a colour.
     const bool f_is_colour =
         std::any_of(names_.begin(), names_.end(), [](const auto& n) { return n.name == "f_g"; });
-    std::map<int, Group> groups;  // by kind, what says none first
+    std::map<int, Group> groups;  // by kind, names without a kind first
     for (std::size_t k = 0; k < names_.size(); ++k) {
       if (used_[k]) continue;
       std::string name = names_[k].name;
@@ -366,7 +367,7 @@ class Sorter {
           }
         if (!columns_.values.empty() && kind > 0) columns_.kind = static_cast<ValueKind>(kind - 1);
       }
-      // what is left over is unknown again
+      // Columns that are left over are unknown again.
       const auto leave = [&](std::optional<std::size_t> at) {
         if (at && std::find(columns_.values.begin(), columns_.values.end(), *at) == columns_.values.end())
           used_[*at] = false;
@@ -410,7 +411,7 @@ void split_cells(std::string_view line, char separator, std::vector<std::string_
         close = line.find('"', close + 2);
       close = std::min(close, line.size());
       const std::size_t end = std::min(line.find(separator, close), line.size());
-      // what stands behind the quotes belongs to the cell, which then is no number
+      // Text behind the quotes belongs to the cell, which then is no number.
       const std::size_t after = std::min(close + 1, end);
       cell = trimmed(line.substr(after, end - after)).empty() ? trimmed(line.substr(at + 1, close - at - 1))
                                                               : trimmed(line.substr(at, end - at));
@@ -431,7 +432,7 @@ std::vector<std::string_view> split_names(std::string_view line, char separator)
   std::vector<std::string_view> cells;
   split_cells(line, separator, cells);
   if (separator != ' ') return cells;
-  // a unit in brackets belongs to the word before it
+  // A unit in brackets belongs to the word before it.
   std::vector<std::string_view> names;
   for (const std::string_view cell : cells) {
     if (!names.empty() && (cell.starts_with('[') || cell.starts_with('(')))

@@ -31,7 +31,7 @@ namespace burnish {
 
 namespace {
 
-/// Format::looks_like by a function of the bytes or the text.
+/// Wraps a function of the bytes or of the text as Format::looks_like.
 template <auto looks_like>
 bool seen(const FileBytes& file) {
   if constexpr (requires { looks_like(file.text()); })
@@ -40,7 +40,8 @@ bool seen(const FileBytes& file) {
     return looks_like(std::span<const std::byte>(file.bytes));
 }
 
-/// Format::parse by a reader, which returns a table, samples or a function with findings, and takes options or none.
+/// Wraps a reader as Format::parse. It returns a table, samples or a function with findings, and takes options or
+/// none.
 template <auto parse>
 Source read_by(const FileBytes& file, const OpenOptions& options) {
   auto parsed = [&] {
@@ -64,7 +65,7 @@ Source read_cornell(const FileBytes& file, const OpenOptions& options) {
           std::move(parsed.findings)};
 }
 
-/// Trees of colour are a function of their own: each has its own cubes.
+/// Reads a tensor tree. Trees of colour become one function, since each tree has its own cubes.
 Source read_tensor_tree(const FileBytes& file, const OpenOptions& options) {
   TensorTreeFile parsed = parse_tensor_tree(file, options);
   Findings findings = parsed.findings;
@@ -85,7 +86,7 @@ Source read_neural(const FileBytes& file, const OpenOptions&) {
   return {fmt::format("{}#{}", file.name, parsed.name), std::move(parsed.brdf), std::move(parsed.findings)};
 }
 
-/// Files of several BRDFs, one of which has to be named.
+/// Refuses a file of several BRDFs, because one of them has to be named.
 Source refuse_book(const FileBytes& file, const OpenOptions&) {
   throw Error::in_file(file.name,
                        "book:FILE#NAME for one material of a book (`burnish info FILE` names them)",
@@ -103,7 +104,7 @@ Source refuse_np(const FileBytes& file, const OpenOptions&) {
                        "the file alone");
 }
 
-/// A surface's files are a model's with more in them.
+/// Returns true for a model's OpenEXR file. A surface's files are a model's with more in them.
 bool is_exr_model(const FileBytes& file) {
   return looks_like_model(file.bytes) && !looks_like_compact(file.bytes) && !looks_like_surface(file.bytes);
 }
@@ -112,8 +113,8 @@ bool is_compact_model(const FileBytes& file) {
   return looks_like_compact(file.bytes) && !looks_like_surface(file.bytes);
 }
 
-/// A line of text may stand before the XML of a window system; tensor trees are such systems too, and OpenMATERIAL is
-/// JSON as baselines are.
+/// Returns true for a Zemax file. A line of text may stand before the XML of a window system, so that is excluded.
+/// Tensor trees are window systems too, and OpenMATERIAL files are JSON as baselines are.
 bool is_zemax(const FileBytes& file) {
   return looks_like_zemax(file.text()) && !looks_like_window_xml(file.text());
 }
@@ -126,7 +127,7 @@ bool is_baseline(const FileBytes& file) {
   return looks_like_baseline(file.text()) && !looks_like_openmaterial(file.text());
 }
 
-// In the order of `burnish help formats`.
+// Rows stand in the order of `burnish help formats`.
 constexpr Format kFormats[] = {
     {.title = "MERL",
      .to = "merl",
@@ -309,7 +310,7 @@ constexpr Format kFormats[] = {
      .parse = refuse_np},
 };
 
-/// The first format of these ways, the surest first, that the file looks like.
+/// Returns the first format that the file looks like, of those recognized in these ways, the surest first.
 const Format* told_format(const FileBytes& file, std::span<const Told> ways) {
   for (const Told way : ways)
     for (const Format& format : kFormats)

@@ -19,9 +19,9 @@ namespace {
 
 constexpr std::string_view kFourierMagic = "SCATFUN";
 constexpr std::uint32_t kMaxCosines = 8192, kIsBsdf = 1, kExtrapolated = 2;
-constexpr double kEndTolerance = 1e-5;  // of cosines -1 and 1
+constexpr double kEndTolerance = 1e-5;  // tolerance of the cosines -1 and 1
 
-/// Where the coefficients of one pair of cosines are, channel after channel.
+/// The place of the coefficients of one pair of cosines, channel after channel.
 struct Series {
   std::uint32_t offset, length;
 };
@@ -35,17 +35,17 @@ struct FourierTable {
   const Series& at(std::size_t i, std::size_t o) const noexcept { return series[o * mu.size() + i]; }
 };
 
-/// Weights of the nodes first - 1 to first + 2; those of nodes that are not there are 0.
+/// Weights of the nodes first - 1 to first + 2; nodes that do not exist have weight 0.
 struct SplineWeights {
   std::size_t first;
   std::array<double, 4> weights;
 };
 
-/// Catmull-Rom weights at x, which is moved into the nodes' range. A slope is that of the nodes on both sides, at an
-/// end that of its interval.
+/// Returns Catmull-Rom weights at x, which is moved into the nodes' range. The slope at a node is that between its
+/// two neighbours, at an end that of its interval.
 SplineWeights spline_weights(const std::vector<float>& nodes, double x) noexcept {
   x = std::clamp<double>(x, nodes.front(), nodes.back());
-  // The interval that holds x; nodes may stand twice at 0, and an interval of no length is never chosen.
+  // The interval holds x. Nodes may stand twice at 0; an interval of no length is never chosen.
   const auto after = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, x);
   const auto k = static_cast<std::size_t>(after - nodes.begin()) - 1;
   const double x0 = nodes[k], x1 = nodes[k + 1], width = x1 - x0, t = (x - x0) / width, t2 = t * t,
@@ -53,7 +53,7 @@ SplineWeights spline_weights(const std::vector<float>& nodes, double x) noexcept
   SplineWeights result{k, {0, 2 * t3 - 3 * t2 + 1, 3 * t2 - 2 * t3, 0}};
   auto& w = result.weights;
 
-  // Hermite's basis times the slope at x0, then at x1.
+  // Hermite's basis is multiplied by the slope at x0, then by the slope at x1.
   const double before = t3 - 2 * t2 + t, behind = t3 - t2;
   const double slope0 = k > 0 ? width / (x1 - nodes[k - 1]) : 1;
   w[k > 0 ? 0 : 1] -= before * slope0;
@@ -65,13 +65,13 @@ SplineWeights spline_weights(const std::vector<float>& nodes, double x) noexcept
   return result;
 }
 
-/// The cosine of the azimuth between -wi and wo; 1 where one of them has none.
+/// Returns the cosine of the azimuth between -wi and wo; 1 if one of them has none.
 double cos_azimuth(Vec3 wi, Vec3 wo) noexcept {
   const double length2 = (wi.x * wi.x + wi.y * wi.y) * (wo.x * wo.x + wo.y * wo.y);
   return length2 > 0 ? std::clamp(-(wi.x * wo.x + wi.y * wo.y) / std::sqrt(length2), -1.0, 1.0) : 1;
 }
 
-/// The sum of a_k cos(k phi).
+/// Returns the sum of a_k cos(k phi).
 double cosine_series(std::span<const double> a, double cos_phi) noexcept {
   double sum = 0, previous = cos_phi, current = 1;
   for (const double a_k : a) {
@@ -81,10 +81,10 @@ double cosine_series(std::span<const double> a, double cos_phi) noexcept {
   return sum;
 }
 
-/// f_r of one pair. `a` has room for the longest series of each channel.
+/// Evaluates f_r of one pair. `a` has room for the longest series of each channel.
 void eval_pair(const FourierTable& table, const DirectionPair& pair, std::span<double> a,
                std::span<double> f) noexcept {
-  // The series between the sixteen nearest series.
+  // The pair's series is interpolated from the sixteen nearest ones.
   std::ranges::fill(a, 0.0);
   const SplineWeights in = spline_weights(table.mu, -pair.wi.z), out = spline_weights(table.mu, pair.wo.z);
   for (std::size_t o = 0; o < 4; ++o)
@@ -97,13 +97,13 @@ void eval_pair(const FourierTable& table, const DirectionPair& pair, std::span<d
           a[c * table.longest + k] += weight * table.coefficients[series.offset + c * series.length + k];
     }
 
-  // Its value at the azimuth, without the cosine that it is stored with.
+  // The series is evaluated at the azimuth and divided by the cosine that it is stored with.
   const double cos_phi = cos_azimuth(pair.wi, pair.wo);
   std::array<double, 3> stored{};
   for (std::size_t c = 0; c < table.channels; ++c)
     stored[c] = cosine_series(a.subspan(c * table.longest, table.longest), cos_phi) / pair.wi.z;
   if (table.channels == 3) {
-    // luminance, red and blue: [Jakob 2014] stores no green
+    // The channels are luminance, red and blue: [Jakob 2014] stores no green.
     const double y = std::max(stored[0], 0.0), red = stored[1], blue = stored[2];
     const Rgb& shares = kLuminanceShares;
     stored = {red, (y - shares.r * red - shares.b * blue) / shares.g, blue};
@@ -162,7 +162,7 @@ std::vector<float> read_finite(ByteReader& reader, std::uint64_t count, const ch
   return values;
 }
 
-/// Cosines from -1 to 1 that rise; each may stand twice but the ends.
+/// Reads cosines that rise from -1 to 1. Each but the ends may stand twice.
 std::vector<float> read_cosines(ByteReader& reader, std::uint64_t count) {
   std::vector<float> mu = read_finite(reader, count, "cosines");
   if (std::abs(mu.front() + 1.0) > kEndTolerance || std::abs(mu.back() - 1.0) > kEndTolerance)
@@ -186,7 +186,7 @@ std::vector<Series> read_series(ByteReader& reader, const FourierHeader& header)
   return series;
 }
 
-/// Counts what is reflected above, and names the rest.
+/// Counts the coefficients of series that reflect above, and names the rest.
 void count_series(const FourierTable& table, Findings& findings) {
   bool transmits = false, reflects_below = false;
   for (std::size_t o = 0; o < table.mu.size(); ++o)
@@ -212,7 +212,7 @@ bool looks_like_fourier(std::span<const std::byte> bytes) noexcept {
 FourierFile parse_fourier(const FileBytes& file) {
   ByteReader reader(file);
   const FourierHeader header = read_fourier_header(reader);
-  // All sizes are known: the file is as long as they say before anything is allocated.
+  // All sizes are known. The file has to be as long as they say before anything is allocated.
   const std::uint64_t pairs = std::uint64_t{header.mu_count} * header.mu_count;
   const std::uint64_t expected =
       reader.offset() + 4 * (header.mu_count + 3 * pairs + header.coefficient_count) + header.remark_bytes;

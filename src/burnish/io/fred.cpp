@@ -13,12 +13,12 @@ namespace burnish {
 
 namespace {
 
-/// How a file writes its numbers.
+/// The form of the numbers in a file.
 struct FredFormat {
   double to_radians = radians(1), scale = 1;
 };
 
-/// Moves to the next line that is neither blank nor a comment, '#' or '!'.
+/// Moves to the next line that is neither blank nor a comment, which starts with '#' or '!'.
 bool next_line(TextReader& reader) noexcept {
   while (reader.next_content_line())
     if (!trimmed(reader.line()).starts_with('!')) return true;
@@ -42,7 +42,7 @@ FredFormat read_format(TextReader& reader) {
   return format;
 }
 
-/// The numbers of the current line, two or three.
+/// Reads the numbers of the current line, two or three, and returns their count.
 std::size_t read_numbers(TextReader& reader, std::array<double, 3>& numbers) {
   std::size_t count = 0;
   for (TextReader ahead = reader; !ahead.word().empty();) ++count;

@@ -49,7 +49,7 @@ std::size_t count_values(std::string_view text) noexcept {
   return count;
 }
 
-/// The basis of a name, as the file states it, or what the name stands for.
+/// Returns the basis of a name: as the file states it, or a basis known by the name.
 PatchBasis find_basis(const WindowXml& xml, std::string_view name, bool older_half) {
   for (const pugi::xml_node node : xml.layer().child("DataDefinition").children("AngleBasis"))
     if (same_name(trimmed(node.child_value("AngleBasisName")), name)) return stated_basis(xml, node);
@@ -61,7 +61,7 @@ PatchBasis find_basis(const WindowXml& xml, std::string_view name, bool older_ha
 
 std::vector<float> read_values(const WindowXml& reader, std::string_view text, std::size_t count) {
   std::vector<float> values;
-  // a value takes a digit and a separator
+  // A value takes at least a digit and a separator.
   values.reserve(std::min(count, text.size() / 2 + 1));
   for (;;) {
     text.remove_prefix(std::min(text.find_first_not_of(kBetweenValues), text.size()));
@@ -79,18 +79,19 @@ std::vector<float> read_values(const WindowXml& reader, std::string_view text, s
   return values;
 }
 
-/// The bases and the matrix between them of one block.
+/// Reads the bases of one block and the matrix between them.
 PatchTable read_matrix(const WindowXml& reader, pugi::xml_node block, bool rows) {
   PatchTable table;
   const char *const column = "ColumnAngleBasis", *const row = "RowAngleBasis";
   const char* const text = block.child_value("ScatteringData");
   const std::size_t count = count_values(text);
-  for (const bool older_half : {false, true}) {  // by the number of values
+  for (const bool older_half : {false, true}) {  // the number of values decides
     table.incident = find_basis(reader, trimmed(block.child_value(rows ? row : column)), older_half);
     table.outgoing = find_basis(reader, trimmed(block.child_value(rows ? column : row)), older_half);
     if (table.incident.size() * table.outgoing.size() == count) break;
   }
-  // the file counts incident patches by where the light goes to, wi by where it comes from.
+  // The file numbers incident patches by the direction that the light goes to, wi by the one that it comes
+  // from.
   table.incident.first_azimuth = kPi;
   const std::size_t in = table.incident.size(), out = table.outgoing.size();
   table.values = read_values(reader, text, in * out);
@@ -101,7 +102,7 @@ PatchTable read_matrix(const WindowXml& reader, pugi::xml_node block, bool rows)
   return table;
 }
 
-/// X, Y and Z as linear Rec. 709.
+/// Converts X, Y and Z to linear Rec. 709.
 PatchTable colour_table(const WindowXml& reader, std::span<const PatchTable> xyz) {
   PatchTable table = xyz[0];
   for (const PatchTable& other : xyz)
@@ -126,7 +127,7 @@ bool looks_like_klems(std::string_view text) noexcept {
 KlemsFile parse_klems(const FileBytes& file, const OpenOptions& options) {
   const WindowXml reader(file);
   const std::string_view structure = reader.structure();
-  const bool rows = same_name(structure, "Rows");  // each row an incident patch
+  const bool rows = same_name(structure, "Rows");  // each row is an incident patch
   if (!rows && !same_name(structure, "Columns"))
     reader.fail("IncidentDataStructure Columns or Rows", in_quotes(structure));
   KlemsFile result;

@@ -14,7 +14,7 @@ namespace burnish {
 namespace {
 
 constexpr std::string_view kMagic = "NVIDIA ARC MBSDF V1\n";
-// older files have one block, of reflection
+// Older files have one block, of reflection.
 constexpr std::string_view kReflection = "MBSDF_DATA_REFLECTION=", kOnly = "MBSDF_DATA=";
 constexpr std::string_view kTransmission = "MBSDF_DATA_TRANSMISSION=";
 constexpr std::size_t kLongestLine = 4096;
@@ -28,7 +28,7 @@ std::string_view read_line(const FileBytes& file, ByteReader& reader) {
   return rest.substr(0, end);
 }
 
-/// What stands in front of a block's values.
+/// The sizes in front of a block's values.
 struct BlockHeader {
   std::uint32_t channels, theta_count, phi_count;
 
@@ -50,7 +50,7 @@ BlockHeader read_block_header(ByteReader& reader) {
   return header;
 }
 
-/// The part that a line begins a block of; nothing for another line.
+/// Returns the part of the block that a line begins; nothing for another line.
 std::optional<BsdfPart> part_begun_by(std::string_view line) noexcept {
   if (line.starts_with(kReflection) || line.starts_with(kOnly)) return BsdfPart::reflection_front;
   return line.starts_with(kTransmission) ? std::optional(BsdfPart::transmission_front) : std::nullopt;
@@ -63,7 +63,7 @@ struct FoundBlock {
   std::uint64_t values_at = 0;
 };
 
-/// Passes over the line break behind a block's values. Returns whether anything more follows.
+/// Passes over the line break behind a block's values. Returns true if more follows.
 bool has_more(const FileBytes& file, ByteReader& reader) {
   const std::string_view rest = file.text().substr(reader.offset());
   if (trimmed(rest).empty() || rest == "\n") return false;
@@ -71,7 +71,7 @@ bool has_more(const FileBytes& file, ByteReader& reader) {
   return true;
 }
 
-/// All blocks; the lines in front of the first become the description.
+/// Finds all blocks; the lines in front of the first become the description.
 std::vector<FoundBlock> find_blocks(const FileBytes& file, ByteReader& reader, Findings& findings) {
   std::vector<FoundBlock> blocks;
   read_line(file, reader);
@@ -93,7 +93,7 @@ std::vector<FoundBlock> find_blocks(const FileBytes& file, ByteReader& reader, F
   return blocks;
 }
 
-/// A block's values, all of which must be numbers.
+/// Reads a block's values, all of which must be numbers.
 std::vector<float> read_block_values(ByteReader& reader, const FoundBlock& block) {
   reader.seek(block.values_at);
   const std::uint64_t count = block.header.value_count();
@@ -108,7 +108,7 @@ std::vector<float> read_block_values(ByteReader& reader, const FoundBlock& block
   return values;
 }
 
-/// Chooses a block, and notes the blocks that are left out; of each part the first can be read.
+/// Chooses a block, and notes the blocks that are left out. Only the first block of each part can be read.
 const FoundBlock& chosen_block(const FileBytes& file, const std::vector<FoundBlock>& found,
                                const OpenOptions& options, Findings& findings) {
   std::vector<BsdfBlock> blocks;

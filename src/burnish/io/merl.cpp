@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 12;
 constexpr int kMaxSize = 3600;  // ten times the finest axis in use
-/// Stored value times this is f_r. Source: [Matusik 2003].
+/// A stored value times this factor of its channel is f_r. Source: [Matusik 2003].
 constexpr std::array kScale = {1 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 
 std::array<std::int32_t, 3> header_of(std::span<const std::byte> bytes) noexcept {
@@ -30,16 +30,16 @@ double read_double(const std::byte* at) noexcept {
   return value;
 }
 
-/// What one slice of theta_h adds to the findings.
+/// The counts that one slice of theta_h adds to the findings.
 struct SliceCount {
   std::uint64_t holes = 0, below_horizon = 0, negatives = 0;
   double most_negative = 0;
   bool finite = true;
-  std::size_t bad_entry = 0;  // where it is not
+  std::size_t bad_entry = 0;  // first entry that is not finite
 };
 
-/// Reads the entries of one theta_h from the file's three planes into the table. abs_cos_phi is |cos phi_d|
-/// of each entry of a row.
+/// Reads the entries of one theta_h from the file's three planes into the table. abs_cos_phi holds |cos
+/// phi_d| of each entry of a row.
 SliceCount read_slice(const std::byte* planes, int h, std::span<const double> abs_cos_phi,
                       HalfDiffTable& table) {
   const std::size_t entries = table.entry_count();
@@ -54,8 +54,8 @@ SliceCount read_slice(const std::byte* planes, int h, std::span<const double> ab
         f[c] = read_double(planes + (c * entries + row + p) * sizeof(double));
       float* entry = &table.values[(row + p) * 3];
 
-      // A direction of the pair is below the horizon where tan theta_h tan theta_d |cos phi_d| >= 1, since
-      // cos theta_i, cos theta_o = cos theta_h cos theta_d -+ sin theta_h sin theta_d cos phi_d.
+      // A direction of the pair is below the horizon if tan theta_h tan theta_d |cos phi_d| >= 1. The reason
+      // is that cos theta_i, cos theta_o = cos theta_h cos theta_d -+ sin theta_h sin theta_d cos phi_d.
       const bool below = tangents * abs_cos_phi[p] >= 1;
       if (below || (f[0] == -1 && f[1] == -1 && f[2] == -1)) {
         ++count.holes;
@@ -66,7 +66,7 @@ SliceCount read_slice(const std::byte* planes, int h, std::span<const double> ab
 
       for (std::size_t c = 0; c < 3; ++c) {
         const double value = f[c] * kScale[c];
-        // also refuses what a float cannot hold
+        // The test also refuses values that a float cannot hold.
         if (!(std::abs(value) <= std::numeric_limits<float>::max())) {
           if (count.finite) count.bad_entry = c * entries + row + p;
           count.finite = false;
@@ -129,7 +129,7 @@ MerlFile parse_merl(const FileBytes& file) {
     reader.fail(fmt::format("{} bytes for {} x {} x {} x 3 values", expected, sizes[0], sizes[1], sizes[2]),
                 fmt::format("{} bytes", file.bytes.size()));
 
-  // slices of theta_h at once, each with its own counts
+  // Slices of theta_h are read in parallel, each with its own counts.
   table.values.resize(entries * 3);
   const std::byte* planes = file.bytes.data() + kHeaderBytes;
   std::vector<double> abs_cos_phi(static_cast<std::size_t>(sizes[2]));

@@ -17,7 +17,7 @@ struct Constant {
   }
 };
 
-/// A 35 MB file in the cache of the file system; the plain baseline reads its bytes only.
+/// Times a 35 MB file in the cache of the file system; the plain baseline only reads its bytes.
 void merl(benchmark::State& state, bool convert) {
   const auto path = std::filesystem::temp_directory_path() / "burnish_merl_bench.binary";
   write_merl(path, Constant{});

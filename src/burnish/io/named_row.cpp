@@ -36,7 +36,7 @@ std::string some_names(const std::vector<std::string>& names) {
 }  // namespace
 
 NamedRow parse_named_row(const FileBytes& file, std::string_view name, const NamedRowKind& kind) {
-  // rows up to the one that is wanted
+  // Rows up to the wanted one are read.
   TextReader reader(file);
   std::vector<std::string> names;
   std::vector<float> numbers;
@@ -48,7 +48,7 @@ NamedRow parse_named_row(const FileBytes& file, std::string_view name, const Nam
     if (name.empty() ? names.size() == 1 : found == name) numbers = read_numbers(reader, kind);
   }
 
-  // without a name it is the only one
+  // Without a name, the row has to be the only one.
   if (name.empty() && reader.next_content_line()) {
     do names.push_back(printable(row_name(reader.line()), kMaxNameLength));
     while (reader.next_content_line());

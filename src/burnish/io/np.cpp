@@ -16,7 +16,7 @@ namespace burnish {
 namespace {
 
 constexpr NamedRowKind kCodes{NpBrdf::kCode, "number", "encoding", "np:FILE#NAME"};
-constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 20;  // of either file
+constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 20;  // limit of each of the two files
 
 }  // namespace
 

@@ -49,7 +49,7 @@ Source from_book(const std::string& file, std::string_view name) {
   return source;
 }
 
-/// Two whole numbers of a text such as "3,4"; nothing where it is no such text or one is negative.
+/// Returns the two whole numbers of a text such as "3,4"; nothing for any other text or a negative number.
 std::optional<std::array<int, 2>> texel_of(std::string_view text) {
   std::array<int, 2> texel{};
   const char* const end = text.data() + text.size();
@@ -92,14 +92,14 @@ void check_spelling(const std::string& spec) {
     throw Error(fmt::format("{}: expected a file or an analytic model, found neither{}", spec, meant));
 }
 
-/// The format that a file looks like, and the file's text where it was UTF-16.
+/// The format that a file looks like, and the file's text if it was converted from UTF-16.
 struct ToldFile {
   const Format* format;
   std::optional<FileBytes> converted;
 };
 
 ToldFile told(const FileBytes& file) {
-  // Binary formats first: their first bytes are unmistakable.
+  // Binary formats come first, because their first bytes are unmistakable.
   if (const Format* binary = binary_format_of(file)) return {binary, {}};
   std::optional<FileBytes> converted = from_utf16(file);
   const Format* format = text_format_of(converted ? *converted : file);
@@ -124,12 +124,12 @@ Source parse_source(const FileBytes& file, const OpenOptions& options) {
 
 bool looks_like_source(const FileBytes& file) {
   constexpr std::size_t kHead = 1 << 16;
-  // pictures are OpenEXR files too
+  // Pictures are OpenEXR files too.
   const bool is_exr = file.text().starts_with("\x76\x2f\x31\x01");
   if (is_exr && file.text().substr(0, kHead).find("burnish") == std::string_view::npos) return false;
   const auto [format, converted] = told(file);
   if (!format) return false;
-  // lists are JSON, as baselines are
+  // Lists are JSON, as baselines are.
   const std::string_view text = converted ? converted->text() : file.text();
   return !looks_like_baseline(text) || looks_like_openmaterial(text) ||
          text.find("\"kind\"") != std::string_view::npos;
