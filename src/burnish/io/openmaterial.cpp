@@ -21,13 +21,13 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kHalfPiOfSchema = 1.570796, kTwoPiOfSchema = 6.283185;
-constexpr double kAngleSlack = 1e-5;      // angles are written with six digits
-constexpr double kSameWavelength = 1e-6;  // relative
+constexpr double kAngleSlack = 1e-5;      // angles may have six digits only
+constexpr double kSameWavelength = 1e-6;  // relative tolerance of equal wavelengths
 constexpr std::size_t kMaxRemark = 160;
 
 using Angles = std::array<double, 3>;  // theta_i, theta_o, phi_o - phi_i
 
-/// The document, with errors that name the file and the byte where its JSON ends.
+/// Returns the document. Errors name the file and the byte where its JSON ends.
 Json parse_document(const FileBytes& file) {
   try {
     return Json::parse(file.text());
@@ -61,13 +61,13 @@ std::vector<double> read_wavelengths(const FileBytes& file, const Json& list) {
   return lambda_m;
 }
 
-/// The place of a wavelength in the list, or its size.
+/// Returns the place of a wavelength in the list, or the list's size.
 std::size_t place_of(std::span<const double> lambda_m, double lambda) noexcept {
   const auto near = [&](double other) { return std::abs(other - lambda) <= kSameWavelength * other; };
   return static_cast<std::size_t>(std::find_if(lambda_m.begin(), lambda_m.end(), near) - lambda_m.begin());
 }
 
-/// One row's numbers, or nothing where one of them is null.
+/// Returns the numbers of one row, or nothing if one of them is null.
 std::optional<std::array<double, 5>> row_numbers(const FileBytes& file, const Json& row, std::size_t number) {
   constexpr std::array names{"wavelength", "incident angle", "exit angle", "azimuth", "value"};
   std::array<double, 5> values{};
@@ -96,11 +96,11 @@ std::optional<std::array<double, 5>> row_numbers(const FileBytes& file, const Js
   return values;
 }
 
-/// Spectra by their angles, in the order in which these come.
+/// Spectra by their angles, in the order in which the angles come.
 struct SpectrumTable {
   std::map<Angles, std::size_t> places;
   std::vector<Angles> angles;
-  std::vector<double> values;  // [angles][wavelength], NaN where nothing stands
+  std::vector<double> values;  // [angles][wavelength], NaN where no value stands
 };
 
 SpectrumTable collect(const FileBytes& file, const Json& rows, std::span<const double> lambda_m) {
@@ -117,7 +117,7 @@ SpectrumTable collect(const FileBytes& file, const Json& rows, std::span<const d
                            fmt::format("{}", lambda));
     const auto [place, is_new] = table.places.emplace(Angles{theta_i, theta_o, phi}, table.angles.size());
     if (is_new) {
-      // as many spectra as there are rows would be mostly holes
+      // A table with almost as many spectra as rows would be mostly holes.
       if ((table.angles.size() + 1) * bands > 64 * rows.size() + 64 * bands)
         throw Error::in_file(file.name, "the same directions at every wavelength", "others at each");
       table.angles.push_back(place->first);
@@ -132,7 +132,7 @@ SpectrumTable collect(const FileBytes& file, const Json& rows, std::span<const d
   return table;
 }
 
-/// A string, or those of an array.
+/// Returns a string, or the strings of an array.
 std::vector<std::string> strings_of(const Json& metadata, const char* key) {
   const auto found = metadata.find(key);
   if (found == metadata.end()) return {};
@@ -168,7 +168,7 @@ void describe(const Json& document, Findings& findings) {
       findings.conventions.push_back(fmt::format("{}: {}.", word, text));
 }
 
-/// An identifier of the form 8-4-4-4-12 from a text: FNV-1a from two starts.
+/// Returns an identifier of the form 8-4-4-4-12 for a text: FNV-1a from two starts.
 std::string identifier(std::string_view text) {
   std::array<std::uint64_t, 2> hash{0xcbf29ce484222325, 0x84222325cbf29ce4};
   for (std::uint64_t& h : hash)
@@ -192,7 +192,7 @@ SampleFile parse_openmaterial(const FileBytes& file, const OpenOptions& options)
   const SpectrumTable table =
       collect(file, member(file, brdf, "lookupTable", Json::value_t::array), lambda_m);
 
-  // whole spectra only
+  // Only whole spectra become samples.
   SampleFile result;
   describe(document, result.findings);
   Samples& samples = result.samples;
@@ -210,7 +210,7 @@ SampleFile parse_openmaterial(const FileBytes& file, const OpenOptions& options)
                              spherical_direction(std::min(theta_o, kHalfPi), phi)});
     samples.values.insert(samples.values.end(), spectrum.begin(), spectrum.end());
   }
-  // nanometres to the digits of a metre's decimal fraction
+  // Wavelengths become nanometres, rounded to the digits of a metre's decimal fraction.
   for (const double lambda : lambda_m) result.findings.lambda_nm.push_back(std::round(lambda * 1e15) / 1e6);
   finish_samples(file.name, options, result);
   result.findings.hole_count = holes;
@@ -224,7 +224,7 @@ OpenMaterialText format_openmaterial(const Samples& samples, std::span<const dou
   if (lambda_nm.size() != channels)
     throw Error(fmt::format("OpenMATERIAL: expected {} wavelengths, found {}", channels, lambda_nm.size()));
 
-  // sums by angles, in the order of the columns
+  // Samples of equal angles are summed, in the order of the columns.
   struct Sum {
     std::vector<double> values;
     std::size_t count = 0;

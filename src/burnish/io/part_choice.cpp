@@ -13,12 +13,13 @@ namespace burnish {
 
 namespace {
 
-/// The visible spectrum first, then what says nothing, then the others as they stand in the file.
+/// Returns the rank of a band: the visible spectrum first, then a band without a name, then others in the
+/// file's order.
 int rank_of_band(std::string_view band) noexcept {
   return same_name(band, "Visible") ? 0 : same_name(band, "CIE-Y") ? 1 : band.empty() ? 2 : 3;
 }
 
-/// The place of the part in the order of preference.
+/// Returns the rank of a part in the order of preference.
 int rank_of_part(BsdfPart part, bool back_first) noexcept {
   const bool other = is_back(part) != back_first && !is_transmission(part);
   return is_transmission(part) ? 2 + is_back(part) : other;
@@ -32,7 +33,7 @@ std::string listed_blocks(std::span<const BsdfBlock> blocks) {
   return blocks.size() > kMost ? text + fmt::format(" and {} more", blocks.size() - kMost) : text;
 }
 
-/// What the options ask for: "part transmission-back in band 'NIR'".
+/// Returns the request of the options in words: "part transmission-back in band 'NIR'".
 std::string asked_for(const OpenOptions& options) {
   std::string text = options.part ? fmt::format("part {}", to_string(*options.part)) : "";
   if (!options.band.empty())

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kLongestSide = 1 << 24;
 
-/// The fields of a file, each checked when it is asked for.
+/// The fields of a file. Each is checked when it is read.
 class Fields {
  public:
   explicit Fields(const FileBytes& file) : file_(file), tensors_(parse_tensor_file(file)) {}
@@ -28,7 +28,8 @@ class Fields {
     return at == tensors_.end() ? nullptr : &*at;
   }
 
-  /// A field of `type` with `rank` dimensions, none of them zero.
+  /// Returns a field of `type` with `rank` dimensions, none of them zero. Throws Error if it is missing or
+  /// differs.
   const Tensor& get(std::string_view name, TensorType type, std::size_t rank) const {
     const Tensor* tensor = find(name);
     if (!tensor) throw Error::in_file(file_.name, fmt::format("a field {}", name), "none");
@@ -56,7 +57,7 @@ class Fields {
     return values;
   }
 
-  /// A grid of [leading shape][height][width].
+  /// Returns a grid of [leading shape][height][width].
   RglGrid grid(std::string_view name, const std::vector<std::uint64_t>& leading) const {
     const Tensor& tensor = get(name, TensorType::f32, leading.size() + 2);
     if (!std::equal(leading.begin(), leading.end(), tensor.shape.begin()))
@@ -75,7 +76,8 @@ class Fields {
   std::vector<Tensor> tensors_;
 };
 
-/// [slices][channels][nodes] to [slices][nodes][channels], or back with the two counts exchanged.
+/// Turns [slices][channels][nodes] into [slices][nodes][channels]; with the two counts exchanged it turns
+/// them back.
 std::vector<float> transpose(const std::vector<float>& values, std::size_t channels, std::size_t nodes) {
   std::vector<float> result(values.size());
   for (std::size_t slice = 0; slice < values.size(); slice += channels * nodes)
@@ -112,7 +114,7 @@ std::string one_line(std::span<const std::byte> bytes) {
   return text;
 }
 
-/// The smallest value in 1/sr at nodes with a negative one; 0 where there is none.
+/// Returns the smallest value in 1/sr at nodes with a negative one; 0 if there is none.
 double most_negative(const RglTable& table) {
   const RglData& data = table.data();
   const auto channels = data.channels, nodes = node_count(data.spectra);
@@ -132,7 +134,7 @@ double most_negative(const RglTable& table) {
   return result;
 }
 
-/// All that the file says, spectral if it is.
+/// Returns all that the file holds, spectral if it is.
 RglData read_data(const Fields& fields) {
   RglData data;
   data.phi_i = fields.floats("phi_i");
@@ -144,7 +146,7 @@ RglData read_data(const Fields& fields) {
   data.luminance = fields.grid("luminance", {phis, thetas});
   data.jacobian = fields.get("jacobian", TensorType::u8, 1).data[0] != std::byte{0};
 
-  // wavelengths or RGB, whose channels the file keeps apart
+  // The channels are wavelengths or RGB, and the file keeps them apart.
   const bool spectral = fields.find("spectra") != nullptr;
   if (spectral) {
     const auto lambda_nm = fields.floats("wavelengths");
@@ -155,7 +157,7 @@ RglData read_data(const Fields& fields) {
   data.spectra = fields.grid(spectral ? "spectra" : "rgb", {phis, thetas, channels});
   data.spectra.values = transpose(data.spectra.values, channels, node_count(data.spectra));
 
-  // what a file may leave out
+  // A file may leave these fields out.
   if (const Tensor* text = fields.find("description"); text && text->type == TensorType::u8)
     data.description = one_line(text->data);
   const std::uint64_t samples = phis * thetas * node_count(data.spectra);
@@ -165,21 +167,22 @@ RglData read_data(const Fields& fields) {
   return data;
 }
 
-/// Turns a mask whose bits stand the other way round: nearly all of a measurement would be holes. There is such a
-/// file; what it calls valid is where other files have their holes. True if it was turned.
+/// Inverts a mask whose bits stand the other way round, which would make holes of nearly all of a measurement.
+/// One such file exists: it marks as valid the places where other files have their holes. Returns true if the
+/// mask was inverted.
 bool turn_mask(std::vector<std::uint8_t>& valid, std::uint64_t samples) noexcept {
   constexpr std::uint64_t kQuarter = 4;
   std::uint64_t measured = 0;
   for (std::uint8_t byte : valid) measured += static_cast<std::uint64_t>(std::popcount(byte));
   if (measured == 0 || measured >= samples / kQuarter) return false;
   for (std::uint8_t& byte : valid) byte = static_cast<std::uint8_t>(~byte);
-  // bits behind the last node are none
+  // Bits behind the last node are no samples.
   if (const auto rest = samples % 8; rest > 0 && !valid.empty())
     valid.back() = static_cast<std::uint8_t>(valid.back() & (0xff << (8 - rest)));
   return true;
 }
 
-/// Zero bits of a mask of `samples` bits; none where there is no mask.
+/// Returns the number of zero bits of a mask of `samples` bits; 0 if there is no mask.
 std::uint64_t count_holes(const std::vector<std::uint8_t>& valid, std::uint64_t samples) noexcept {
   if (valid.empty()) return 0;
   std::uint64_t measured = 0;
@@ -219,7 +222,7 @@ RglFile parse_rgl(const FileBytes& file, const OpenOptions& options) {
   if (findings.hole_count > 0)
     findings.conventions.push_back("nodes that were not measured keep the values the file fills in");
 
-  // the table checks what the file says
+  // The table checks the file's numbers.
   try {
     if (spectral && options.keep_spectral) {
       findings.lambda_nm = data.lambda_nm;
@@ -248,7 +251,7 @@ std::string format_rgl(const RglTable& table) {
   const auto nodes = node_count(data.spectra);
   const auto side = [](int length) { return static_cast<std::uint64_t>(length); };
 
-  // channels apart again, three of them for a grey table
+  // The file keeps channels apart, and a grey table becomes three of them.
   std::vector<float> spectra;  // [slice][channel][node]
   const bool grey = data.lambda_nm.empty() && data.channels == 1;
   if (grey)

@@ -15,13 +15,13 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kFewSamples = 8;       // at an incidence, which then says nothing
-constexpr double kSideCosine = 0.7;          // of the azimuth from wi, or from opposite to it
-constexpr double kNear = radians(15);        // of theta_o to theta_i: a peak there is a mirror's
-constexpr double kLeastTheta = radians(10);  // of wi: below, the sides are near each other
+constexpr std::size_t kFewSamples = 8;       // incidences of fewer samples say nothing
+constexpr double kSideCosine = 0.7;          // of the azimuth from wi, or from its opposite
+constexpr double kNear = radians(15);        // of theta_o to theta_i: a peak nearer is a mirror's
+constexpr double kLeastTheta = radians(10);  // of wi: below it the two sides are close together
 constexpr double kMostTheta = radians(80);
 
-/// At how many incidences the largest value lies on the light's own side, and on the other.
+/// Numbers of incidences with the largest value on the light's own side, and on the opposite side.
 struct SideVotes {
   std::size_t own = 0, other = 0;
 };
@@ -31,16 +31,17 @@ double brightness(const Samples& samples, std::size_t i) noexcept {
   return std::accumulate(f.begin(), f.end(), 0.0);
 }
 
-/// What lies on each side of one incidence.
+/// The largest value on one side of an incidence.
 struct Side {
   double largest = -std::numeric_limits<double>::infinity();
-  double theta = 0;  // where
+  double theta = 0;  // theta_o of the largest value
   bool seen = false;
 };
 
-/// `factor`: how many times the other side's largest value a side has to have.
+/// Counts the incidences that each side wins. A side wins if its largest value exceeds `factor` times the
+/// other side's.
 SideVotes side_votes(const Samples& samples, double factor) {
-  // samples of one incidence together
+  // Samples of one incidence are sorted together.
   const auto key = [&](std::size_t i) {
     const Vec3 wi = samples.pairs[i].wi;
     return std::array{std::round(wi.x * 1e6), std::round(wi.y * 1e6)};
@@ -72,7 +73,7 @@ SideVotes side_votes(const Samples& samples, double factor) {
       side->seen = true;
       if (f > side->largest) side->largest = f, side->theta = theta_of(wo);
     }
-    // a side that was not measured is as dark as the darkest
+    // A side that was not measured counts as the darkest value of the incidence.
     const auto beats = [&](const Side& a, const Side& b) {
       const double least = b.seen ? std::max(b.largest, smallest) : smallest;
       return a.seen && std::abs(a.theta - theta_i) < kNear && a.largest > 0 && a.largest > factor * least;

@@ -13,8 +13,8 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kFewestCovering = 10;  // fewer samples are no survey of a surface
-constexpr double kOneAngle = 1e-4;           // radians; angles that differ by less are one
+constexpr std::size_t kFewestCovering = 10;  // a set of fewer samples is no survey of a surface
+constexpr double kOneAngle = 1e-4;           // radians; angles that differ by less count as one
 
 std::vector<double> to_rec709(const Samples& samples, std::span<const std::array<double, 3>> weights) {
   std::vector<double> rgb(samples.size() * 3, 0.0);
@@ -32,7 +32,7 @@ bool same_incident_azimuth(const Samples& samples) noexcept {
   if (samples.pairs.empty()) return true;
   const double first = phi_of(samples.pairs.front().wi);
   return std::all_of(samples.pairs.begin(), samples.pairs.end(), [&](const DirectionPair& pair) {
-    // the azimuth of the normal is any
+    // The normal has any azimuth.
     return std::hypot(pair.wi.x, pair.wi.y) < 1e-6 ||
            std::abs(std::remainder(phi_of(pair.wi) - first, kTwoPi)) < 1e-6;
   });
@@ -43,13 +43,13 @@ void finish_samples(const std::string& file, const OpenOptions& options, SampleF
   Findings& findings = result.findings;
   if (samples.size() == 0) throw Error::in_file(file, "at least one measurement", "none");
 
-  // negatives
+  // Negative values are counted.
   for (const double value : samples.values) {
     findings.negative_count += value < 0;
     findings.most_negative = std::min(findings.most_negative, value);
   }
 
-  // spectra, kept or made linear Rec. 709, where colours outside the gamut have negatives of their own
+  // Spectra are kept or become linear Rec. 709, in which colours outside the gamut have negative values too.
   if (!findings.lambda_nm.empty()) {
     const auto& lambda = findings.lambda_nm;
     if (lambda.front() <= 0 ||
@@ -70,7 +70,7 @@ void finish_samples(const std::string& file, const OpenOptions& options, SampleF
     }
   }
 
-  // coverage
+  // The findings state the number of samples and the angles covered.
   findings.sample_count = samples.size();
   findings.theta_i_min = findings.theta_o_min = kHalfPi;
   for (const auto& [wi, wo] : samples.pairs) {

@@ -19,12 +19,12 @@ std::string format_slice_image(const HalfDiffTable& table) {
     throw Error("slices are drawn of grey or RGB tables, not of " + std::to_string(table.channel_count) +
                 " channels");
 
-  // slices of phi_d in rows, as square as can be; holes stay transparent
+  // Slices of phi_d stand in rows, as square as can be. Holes stay transparent.
   const auto channels = table.channel_count;
   const int across = static_cast<int>(std::ceil(std::sqrt(table.phi_d_count)));
   const int down = (table.phi_d_count + across - 1) / across;
   const int width = across * table.theta_d_count, height = down * table.theta_h_count;
-  const std::size_t pixel = channels + 1;  // the last is A
+  const std::size_t pixel = channels + 1;  // the last channel is A
   std::vector<float> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * pixel, 0.0f);
   for (int p = 0; p < table.phi_d_count; ++p)
     for (int h = 0; h < table.theta_h_count; ++h)
@@ -39,7 +39,7 @@ std::string format_slice_image(const HalfDiffTable& table) {
         to[channels] = 1;
       }
 
-  // what it takes to find an entry in the picture
+  // The attributes state all that is needed to find an entry in the picture.
   Imf::Header header(width, height);
   header.compression() = Imf::ZIP_COMPRESSION;
   header.insert("thetaHCount", Imf::IntAttribute(table.theta_h_count));

@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::size_t kReciprocityPairs = 20000;
 constexpr std::array kAlbedoAngles{0.0, radians(30), radians(60)};
-constexpr double kMostFilled = 0.05;  // of the hemisphere: what is unknown there is taken to be like the rest
-constexpr double kMostReflected = 1.02;  // of what is received: more is no noise
+constexpr double kMostFilled = 0.05;     // of the hemisphere; up to it, unknown directions count as the rest
+constexpr double kMostReflected = 1.02;  // share of the received light; a greater one is no noise
 
-/// One sentence where a measurement reflects more than it receives.
+/// Returns one sentence if a measurement reflects more than it receives.
 std::optional<std::string> energy_warning(const Source& source, const std::vector<AlbedoAt>& albedos) {
   if (!is_measurement(source)) return std::nullopt;
   double most = 0, theta = 0;
@@ -31,8 +31,8 @@ std::optional<std::string> energy_warning(const Source& source, const std::vecto
                      source.samples() ? " Reflectance factors? --brf divides them by pi." : "");
 }
 
-/// What a source reflects. Patches have a sum of their own; a rim of the hemisphere that is unknown reflects as the rest
-/// does.
+/// Returns the albedos of a source. Tables of patches are summed exactly. If a small share of the hemisphere is
+/// unknown, that share is taken to reflect as the rest does.
 std::vector<AlbedoAt> reported_albedos(const Source& source) {
   std::vector<AlbedoAt> albedos = albedo_curve(source.ref(), kAlbedoAngles);
   for (AlbedoAt& at : albedos) {

@@ -20,31 +20,31 @@ constexpr std::string_view kAnisotropic = "OPTIS - Anisotropic BSDF surface file
                            kBrdf = "OPTIS - brdf surface file";
 constexpr std::size_t kMaxAngles = 4096, kMaxValues = std::size_t{1} << 26;
 constexpr double kMaxValue = 1e30;
-constexpr double kTrusted = 0.05;  // of a reflectance: quadrature and rounding
-constexpr double kHorizon = 1e-6;  // a cosine that stands for none
+constexpr double kTrusted = 0.05;  // relative to a reflectance; allows for quadrature and rounding
+constexpr double kHorizon = 1e-6;  // a cosine below it counts as the horizon
 constexpr double kSameDegree = 1e-6;
 
-/// Values over theta and phi, degrees, of one incidence.
+/// Values of one incidence over theta and phi in degrees.
 struct Block {
   std::vector<double> theta_deg, phi_deg, values;  // [theta][phi]
 
   friend bool operator==(const Block&, const Block&) = default;
 };
 
-/// What both kinds of file come to: blocks[channel][rotation][incidence].
+/// The content of either kind of file: blocks[channel][rotation][incidence].
 struct Content {
-  bool holds_f = true;  // f_r; else f_r cos(theta_o)
+  bool holds_f = true;  // f_r; otherwise f_r cos(theta_o)
   std::vector<double> rotations_deg, incidences_deg, lambda_nm;
   std::vector<std::vector<std::vector<Block>>> blocks;
   std::string comment;
-  std::string scaling;           // what was made of the stated reflectances
-  std::vector<BsdfBlock> parts;  // of the file, in its order
-  std::size_t chosen = 0;        // of these the one that is kept
+  std::string scaling;           // says how the stated reflectances were used
+  std::vector<BsdfBlock> parts;  // parts of the file, in its order
+  std::size_t chosen = 0;        // the one of these parts that is kept
 
   bool keeps(std::size_t part) const noexcept { return part == chosen; }
 };
 
-/// The next number, on a later line where this one has none left.
+/// Returns the next number, which stands on a later line if this one has none left.
 double next_number(TextReader& reader, std::string_view what) {
   for (;;) {
     if (const std::string_view word = reader.word(); !word.empty()) {
@@ -55,7 +55,7 @@ double next_number(TextReader& reader, std::string_view what) {
   }
 }
 
-/// Passes over the rest of a line that is no number.
+/// Passes over the words left in a line, which are no numbers.
 void skip_line(TextReader& reader) {
   while (!reader.word().empty()) {
   }
@@ -68,7 +68,7 @@ std::size_t next_count(TextReader& reader, std::string_view what, std::size_t mo
   return static_cast<std::size_t>(value);
 }
 
-/// Increasing angles in [low, high] degrees.
+/// Reads increasing angles in [0, high] degrees.
 std::vector<double> next_angles(TextReader& reader, std::string_view what, std::size_t count, double high) {
   std::vector<double> angles;
   for (std::size_t i = 0; i < count; ++i) {
@@ -80,7 +80,7 @@ std::vector<double> next_angles(TextReader& reader, std::string_view what, std::
   return angles;
 }
 
-/// Thetas of light that passed through count from 90 to 180 degrees: makes them those of the mirrored directions.
+/// Mirrors the thetas of transmitted light, which count from 90 to 180 degrees, through the surface.
 void mirror_thetas(Block& block) {
   const std::size_t phis = block.phi_deg.size();
   std::reverse(block.theta_deg.begin(), block.theta_deg.end());
@@ -93,7 +93,7 @@ void mirror_thetas(Block& block) {
   block.values = std::move(values);
 }
 
-/// A block, of transmission with thetas from 90 to 180 degrees or from 0 to 90.
+/// Reads a block. Thetas of transmission count from 90 to 180 degrees or from 0 to 90.
 Block next_block(TextReader& reader, BsdfPart part) {
   const std::size_t thetas = next_count(reader, "the number of theta", kMaxAngles);
   const std::size_t phis = next_count(reader, "the number of phi", kMaxAngles);
@@ -120,7 +120,7 @@ Block next_block(TextReader& reader, BsdfPart part) {
   return block;
 }
 
-/// The lines that both kinds begin with, up to the type of the values.
+/// Reads the lines that both kinds begin with, up to the type of the values.
 Content read_preamble(TextReader& reader, const std::string& file, const OpenOptions& options,
                       bool anisotropic) {
   Content content;
@@ -153,10 +153,12 @@ Content read_preamble(TextReader& reader, const std::string& file, const OpenOpt
   return content;
 }
 
-/// Integrals over theta in [a, b] of sin(theta) times a line that is 1 at a and 0 at b, and of the other line; with
-/// `cosine` of sin(theta) cos(theta). Exact: a coarse table of constant values integrates to what it should.
+/// Returns the integrals over theta in [a, b] of sin(theta) times a line that is 1 at a and 0 at b, and times the
+/// other line. With `cosine`, sin(theta) cos(theta) takes the place of sin(theta). The integrals are exact, so that
+/// a coarse table of constant values integrates to its true share.
 std::pair<double, double> line_integrals(double a, double b, bool cosine) noexcept {
-  // sin(theta) cos(theta) is sin(2 theta) / 2: with u = w theta, the integrals of sin(u) and of u sin(u)
+  // sin(theta) cos(theta) is sin(2 theta) / 2. With u = w theta, the integrals are those of sin(u) and of u
+  // sin(u).
   const double w = cosine ? 2 : 1, ua = w * a, ub = w * b;
   const double whole = std::cos(ua) - std::cos(ub);
   const double first = (std::sin(ub) - ub * std::cos(ub)) - (std::sin(ua) - ua * std::cos(ua));
@@ -164,11 +166,11 @@ std::pair<double, double> line_integrals(double a, double b, bool cosine) noexce
   return {scale * (whole - rising), scale * rising};
 }
 
-/// The integral over the hemisphere of a block's values times their cosine, or without where they contain it; linear
-/// between angles.
+/// Returns the integral of a block over the hemisphere, linear between angles. Values are multiplied by the cosine
+/// unless they contain it.
 double integral(const Block& block, bool holds_f) noexcept {
   const std::size_t phis = block.phi_deg.size();
-  // what of the circle each azimuth stands for
+  // Each azimuth stands for a share of the circle.
   const auto around = [&](std::size_t t) {
     double sum = 0;
     for (std::size_t p = 1; p < phis; ++p)
@@ -198,7 +200,8 @@ void scale(Block& block, double factor, const TextReader& reader) {
   }
 }
 
-/// Weights of the nodes around x: the first, the second's weight. Constant beyond the ends.
+/// Returns the first of the two nodes around x and the weight of the second. Values are constant beyond the
+/// ends.
 std::pair<std::size_t, double> place_of(const std::vector<double>& nodes, double x) noexcept {
   if (nodes.size() == 1 || x <= nodes.front()) return {0, 0.0};
   const auto above =
@@ -220,10 +223,10 @@ double value_at(const Block& block, double theta_deg, double phi_deg) noexcept {
   return sum;
 }
 
-/// What stands of one part in front of the blocks of a `.anisotropicbsdf`.
+/// The numbers of one part that stand in front of the blocks of a `.anisotropicbsdf`.
 struct PartHead {
   std::vector<double> rotations_deg, incidences_deg, lambda_nm, shares;
-  double measured_deg = 0;  // the incidence of the spectrum
+  double measured_deg = 0;  // incidence at which the spectrum was measured
 };
 
 void read_part_angles(TextReader& reader, PartHead& head) {
@@ -241,7 +244,7 @@ void read_part_angles(TextReader& reader, PartHead& head) {
 void read_part_spectrum(TextReader& reader, PartHead& head) {
   head.measured_deg = next_number(reader, "the incidence of the spectrum");
   next_number(reader, "the azimuth of the spectrum");
-  reader.next_line();  // its description
+  reader.next_line();  // the spectrum's description
   skip_line(reader);
   for (std::size_t n = next_count(reader, "the number of wavelengths", kMaxFileChannels); n > 0; --n) {
     head.lambda_nm.push_back(next_number(reader, "a wavelength"));
@@ -249,14 +252,15 @@ void read_part_spectrum(TextReader& reader, PartHead& head) {
   }
 }
 
-/// Makes a channel a wavelength of one part's blocks: scaled to the spectrum, or as they are where they say the same.
+/// Makes one channel for each wavelength of one part's blocks, scaled to the spectrum. A flat spectrum makes a
+/// single channel, and blocks that agree with it stay as they are.
 void take_spectrum(const TextReader& reader, PartHead head, std::vector<std::vector<Block>> blocks,
                    Content& content) {
   content.rotations_deg = std::move(head.rotations_deg);
   content.incidences_deg = std::move(head.incidences_deg);
   content.lambda_nm = std::move(head.lambda_nm);
   std::vector<double> shares = std::move(head.shares);
-  // the share that the blocks have where the spectrum was measured
+  // The blocks have this share at the incidence of the spectrum.
   const auto [first, weight] = place_of(content.incidences_deg, head.measured_deg);
   double found = (1 - weight) * integral(blocks[0][first], content.holds_f);
   if (weight > 0) found += weight * integral(blocks[0][first + 1], content.holds_f);
@@ -268,7 +272,7 @@ void take_spectrum(const TextReader& reader, PartHead head, std::vector<std::vec
       head.measured_deg, 100 * *least, 100 * *most, kept ? "taken as they are" : "scaled");
   if (flat) {
     shares = {kept ? found : *least};
-    if (content.lambda_nm.size() > 1) content.lambda_nm.clear();  // grey; one alone is where it was measured
+    if (content.lambda_nm.size() > 1) content.lambda_nm.clear();  // grey; one wavelength alone is kept
   }
   for (const double r : shares) {
     content.blocks.push_back(blocks);
@@ -277,8 +281,8 @@ void take_spectrum(const TextReader& reader, PartHead head, std::vector<std::vec
   }
 }
 
-/// One block for each rotation and incidence of each part, and the spectra they are scaled to. Angles of all parts come
-/// first, then their spectra, then their blocks.
+/// Reads one block for each rotation and incidence of each part, and the spectra that the blocks are scaled to. Angles
+/// of all parts come first, then their spectra, then their blocks.
 Content read_anisotropic(TextReader& reader, const std::string& file, const OpenOptions& options) {
   Content content = read_preamble(reader, file, options, true);
   std::vector<PartHead> heads(content.parts.size());
@@ -296,7 +300,8 @@ Content read_anisotropic(TextReader& reader, const std::string& file, const Open
   return content;
 }
 
-/// One block for each incidence and wavelength, each with its reflectance; all of reflection before transmission.
+/// Reads one block for each incidence and wavelength, each with its reflectance. Reflection comes before
+/// transmission.
 Content read_brdf(TextReader& reader, const std::string& file, const OpenOptions& options) {
   Content content = read_preamble(reader, file, options, false);
   const std::size_t incidences = next_count(reader, "the number of incidences", kMaxAngles);
@@ -330,7 +335,7 @@ Content read_brdf(TextReader& reader, const std::string& file, const OpenOptions
   return content;
 }
 
-/// Angles of any of the blocks, degrees, less than kSameDegree apart taken as one.
+/// Returns the angles of all blocks in degrees. Angles less than kSameDegree apart count as one.
 std::vector<double> all_angles(const Content& content, std::vector<double> Block::*angles) {
   std::vector<double> all;
   for (const auto& of_channel : content.blocks)
@@ -347,23 +352,24 @@ std::vector<double> all_angles(const Content& content, std::vector<double> Block
   return all;
 }
 
-/// Where each node of the table comes from in the file.
+/// A node of the table and the angle in the file that its values come from.
 struct AzimuthNode {
   double node_deg, phi_deg;
 };
 
-/// Azimuths phi_o - phi_i of the file's phi, whose 0 is the mirror direction.
+/// Returns the azimuths phi_o - phi_i of the file's phi, whose 0 is the mirror direction.
 std::vector<AzimuthNode> azimuth_nodes(const std::vector<double>& phis_deg, bool folded) {
   std::vector<AzimuthNode> nodes;
   for (const double phi : phis_deg) {
-    if (!folded && phi >= 360 - kSameDegree && phis_deg.front() < kSameDegree) continue;  // 0 again
+    if (!folded && phi >= 360 - kSameDegree && phis_deg.front() < kSameDegree) continue;  // the same as 0
     nodes.push_back({folded ? 180 - phi : std::fmod(phi + 180, 360), phi});
   }
   std::sort(nodes.begin(), nodes.end(), [](const auto& a, const auto& b) { return a.node_deg < b.node_deg; });
   return nodes;
 }
 
-/// Rotations of the sample; wi stands opposite to where the light travels, from which anisotropy angles count.
+/// Returns the azimuths of wi for the sample's rotations. Anisotropy angles count from the direction that the
+/// light travels to, and wi stands opposite to it.
 std::vector<AzimuthNode> rotation_nodes(const std::vector<double>& rotations_deg) {
   std::vector<AzimuthNode> nodes;
   for (const double angle : rotations_deg) nodes.push_back({std::fmod(540 - angle, 360), angle});
@@ -384,14 +390,14 @@ AngleAxis polar_axis(const std::vector<double>& thetas_deg) {
   return make_axis(angles);
 }
 
-/// A table, and what its values were.
+/// A table, and the counts of its values.
 struct CountedTable {
   AngleTable table;
   std::size_t entries = 0, holes = 0, negatives = 0;
   double most_negative = 0;
 };
 
-/// Every entry from its block, a hole where a cosine cannot be divided out.
+/// Fills every entry from its block. An entry is a hole if its cosine cannot be divided out.
 CountedTable make_table(const FileBytes& file, const Content& content) {
   const std::vector<double> thetas = all_angles(content, &Block::theta_deg);
   const std::vector<double> phis = all_angles(content, &Block::phi_deg);
@@ -439,7 +445,7 @@ void check_wavelengths(const std::string& file, const std::vector<double>& lambd
                          fmt::format("{} ... {} nm out of order", lambda_nm.front(), lambda_nm.back()));
 }
 
-/// Whether no rotation changes anything.
+/// Returns true if all rotations have the same values.
 bool rotations_alike(const Content& content) {
   return std::all_of(content.blocks.begin(), content.blocks.end(), [](const auto& of_channel) {
     return std::all_of(of_channel.begin(), of_channel.end(),
@@ -447,7 +453,7 @@ bool rotations_alike(const Content& content) {
   });
 }
 
-/// One channel a wavelength becomes three.
+/// Converts one channel for each wavelength to three of linear Rec. 709.
 AngleTable in_rec709(const std::string& file, AngleTable table, const std::vector<double>& lambda_nm,
                      const std::string& illuminant) {
   const auto weights = rec709_weights_of(file, lambda_nm, illuminant);
@@ -493,7 +499,7 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
                               : "Values are f_r.",
        content.scaling});
 
-  // rotations that change nothing
+  // Rotations with equal values make the table isotropic.
   if (content.rotations_deg.size() > 1 && rotations_alike(content)) {
     findings.conventions.push_back(
         fmt::format("Taken as isotropic: {} rotations of the sample have the same values.",

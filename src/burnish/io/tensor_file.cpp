@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kSignature("tensor_file\0", 12);
 constexpr std::uint64_t kAlignment = 8;
-// Name length, one byte of name, dimensions, type, offset.
+// The smallest field has a name's length, one byte of name, dimensions, type and offset.
 constexpr std::uint64_t kMinField = 2 + 1 + 2 + 1 + 8;
 
 struct TypeInfo {
@@ -47,7 +47,7 @@ Tensor parse_field(const FileBytes& file, ByteReader& reader) {
   tensor.type = static_cast<TensorType>(type);
   tensor.offset = reader.number<std::uint64_t>("a data offset");
 
-  // no product of lengths may overflow, nor be more than the file has
+  // The product of lengths may neither overflow nor exceed the file.
   reader.require(std::uint64_t{8} * dimensions, "shape");
   std::uint64_t bytes = size_of(tensor.type);
   for (int d = 0; d < dimensions; ++d) {
@@ -85,7 +85,7 @@ std::vector<Tensor> parse_tensor_file(const FileBytes& file) {
     throw Error(file.name, 0, "a tensor file's signature", "other bytes");
   const auto major = reader.number<std::uint8_t>("a version"),
              minor = reader.number<std::uint8_t>("a version");
-  // as Mitsuba has it: one of the two is enough
+  // One of the two numbers is enough, as in Mitsuba.
   if (major != 1 && minor != 0) reader.fail("version 1.0", fmt::format("{}.{}", major, minor));
   const auto count = reader.number<std::uint32_t>("a number of fields");
   if (count > reader.remaining() / kMinField)
@@ -95,7 +95,7 @@ std::vector<Tensor> parse_tensor_file(const FileBytes& file) {
   tensors.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) tensors.push_back(parse_field(file, reader));
 
-  // by name: each once
+  // Sorting by name shows a repeated one.
   std::vector<const Tensor*> order;
   for (const Tensor& tensor : tensors) order.push_back(&tensor);
   std::sort(order.begin(), order.end(), [](auto* a, auto* b) { return a->name < b->name; });
@@ -103,7 +103,7 @@ std::vector<Tensor> parse_tensor_file(const FileBytes& file) {
     if (order[i]->name == order[i - 1]->name)
       throw Error::in_file(file.name, "each field once", "two fields named " + field_name(order[i]->name));
 
-  // front to back, each datum starts where the header and the data before it have ended.
+  // From front to back, each tensor's data start at or behind the end of the header and of the data before.
   std::sort(order.begin(), order.end(), [](auto* a, auto* b) {
     return std::pair(a->offset, a->data.size()) < std::pair(b->offset, b->data.size());
   });
@@ -126,11 +126,11 @@ std::string format_tensor_file(std::span<const Tensor> tensors) {
   put(std::uint8_t{0});
   put(static_cast<std::uint32_t>(tensors.size()));
 
-  // the header's size, after which the data begin
+  // The data begin behind the header.
   std::uint64_t offset = bytes.size();
   for (const Tensor& tensor : tensors) offset += kMinField - 1 + tensor.name.size() + 8 * tensor.shape.size();
 
-  // fields
+  // The fields follow.
   std::vector<std::uint64_t> offsets;
   for (const Tensor& tensor : tensors) {
     assert(!tensor.name.empty() && tensor.name.size() <= std::numeric_limits<std::uint16_t>::max());
@@ -150,7 +150,7 @@ std::string format_tensor_file(std::span<const Tensor> tensors) {
     offset += size;
   }
 
-  // data, each at its place
+  // The data follow, each at its offset.
   bytes.reserve(offset);
   for (std::size_t i = 0; i < tensors.size(); ++i) {
     bytes.resize(offsets[i]);

@@ -56,7 +56,7 @@ class BraceReader {
     tree_.nodes.emplace_back();
     eat('{');
     if (at('{')) {
-      // the links of a branch stand together, its nodes need not
+      // The links of a branch stand together; its nodes need not.
       const std::size_t first = tree_.links.size();
       tree_.nodes[number].first = static_cast<std::uint32_t>(first);
       tree_.links.resize(first + children_);
@@ -107,7 +107,7 @@ void add_braces(const TensorTree& tree, std::size_t index, std::string& text) {
   text += " }\n";
 }
 
-/// A name as XML content.
+/// Returns a name as XML content.
 std::string escaped(std::string_view name) {
   std::string text;
   for (const char c : name) {

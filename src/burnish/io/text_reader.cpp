@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kSeparators = " \t,";
 
-/// What ends the lines of a text: old systems have \r alone.
+/// Returns the character that ends the lines of a text: \n, or \r alone on old systems.
 char line_end_of(std::string_view text) noexcept {
   const std::size_t first = text.find_first_of("\r\n");
   return first != std::string_view::npos && text[first] == '\r' && !text.substr(first + 1).starts_with('\n')

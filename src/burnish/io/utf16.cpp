@@ -42,7 +42,7 @@ std::optional<FileBytes> from_utf16(const FileBytes& file) {
   for (std::size_t i = 2; i < bytes.size(); i += 2) {
     std::uint32_t character = unit(i);
     if (character >= 0xd800 && character < 0xe000) {
-      // the upper half of a pair, then the lower
+      // The upper half of a pair comes first, then the lower.
       if (character >= 0xdc00 || i + 2 == bytes.size()) return std::nullopt;
       const std::uint32_t lower = unit(i += 2);
       if (lower < 0xdc00 || lower >= 0xe000) return std::nullopt;

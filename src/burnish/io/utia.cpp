@@ -17,9 +17,10 @@ constexpr std::size_t kDirections = kThetas * kPhis, kPlane = kDirections * kDir
 constexpr std::size_t kBytes = kPlanes * kPlane * sizeof(double);
 constexpr double kThetaStep = radians(15), kPhiStep = radians(7.5);
 
-// dj_brdf.h, utia::eval and utia::normalize: the scale, and sRGB's transfer function with its own knee.
+// dj_brdf.h has these numbers in utia::eval and utia::normalize: the scale, and sRGB's transfer function with
+// its own knee.
 constexpr double kStoredWhite = 140, kScale = 100, kKnee = 0.0375, kSlope = 12.92;
-constexpr double kAboveKnee = kKnee * (1 + 1e-14);  // however it is rounded
+constexpr double kAboveKnee = kKnee * (1 + 1e-14);  // above the knee after any rounding
 
 double f_of_stored(double stored) noexcept {
   const double v = stored / kStoredWhite;
@@ -28,7 +29,7 @@ double f_of_stored(double stored) noexcept {
 
 double stored_of_f(double f) noexcept {
   const double linear = f / kScale;
-  // the curve jumps at its knee, and what lies between becomes the nearer side
+  // The curve jumps at its knee. A value within the jump takes the nearer side.
   static const double upper = std::pow((kKnee + 0.055) / 1.055, 2.4), middle = (upper + kKnee / kSlope) / 2;
   return kStoredWhite * (linear > middle ? std::max(1.055 * std::pow(linear, 1 / 2.4) - 0.055, kAboveKnee)
                                          : std::min(linear * kSlope, kKnee));
@@ -40,7 +41,8 @@ double stored_at(std::span<const std::byte> bytes, std::size_t index) noexcept {
   return value;
 }
 
-/// Where the file has an entry of the table: its axes are phi_i, theta_i, theta_o and phi_o - phi_i.
+/// Returns the place in the file of a table's entry. The table's axes are phi_i, theta_i, theta_o and phi_o -
+/// phi_i.
 std::size_t place_of(const AngleTable& table, std::size_t entry) noexcept {
   const auto [phi_i, theta_i, theta_o, turn] = node_of_entry(table, entry);
   return (theta_i * kPhis + phi_i) * kDirections + theta_o * kPhis + (phi_i + turn) % kPhis;
@@ -50,7 +52,7 @@ std::size_t place_of(const AngleTable& table, std::size_t entry) noexcept {
 
 bool looks_like_utia(std::span<const std::byte> bytes) noexcept {
   if (bytes.size() != kBytes) return false;
-  // text and other numbers read as doubles are tiny or huge almost everywhere
+  // Text and other numbers, read as doubles, are tiny or huge almost everywhere.
   std::size_t likely = 0;
   for (std::size_t i = 0; i < kPlanes * kPlane; i += 97) {
     const double size = std::abs(stored_at(bytes, i));

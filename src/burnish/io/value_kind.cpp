@@ -44,7 +44,7 @@ std::optional<ValueKind> kind_of_name(std::string_view name) {
   if (is_one_of(kNamesOfF, name)) return ValueKind::f;
   if (is_one_of(kNamesOfBrf, name)) return ValueKind::brf;
   if (is_one_of(kNamesOfCorrected, name)) return ValueKind::f_cos_o;
-  // f_r times the cosine of a named angle
+  // The value is f_r times the cosine of a named angle.
   const std::size_t cosine = name.find("_cos");
   if (cosine == std::string_view::npos || !is_one_of(kNamesOfF, name.substr(0, cosine))) return std::nullopt;
   std::string angle(name.substr(cosine + 4));

@@ -11,8 +11,8 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kMaxListed = 12;   // blocks that are named as left out
-constexpr std::size_t kMaxBlocks = 256;  // that can be chosen: no file of a window has as many
+constexpr std::size_t kMaxListed = 12;   // most blocks listed as left out
+constexpr std::size_t kMaxBlocks = 256;  // most blocks to choose from; no window's file has as many
 
 std::string_view wavelength_of(pugi::xml_node data) {
   return trimmed(data.child_value("Wavelength"));
@@ -22,14 +22,15 @@ std::string_view direction_of(pugi::xml_node block) {
   return trimmed(block.child_value("WavelengthDataDirection"));
 }
 
-/// The part that a file's WavelengthDataDirection names; nothing for others, such as absorptances.
+/// Returns the part that a file's WavelengthDataDirection names; nothing for other names, such as
+/// absorptances.
 std::optional<BsdfPart> part_in_direction(std::string_view direction) noexcept {
   for (const BsdfPart part : kBsdfParts)
     if (same_name(direction, window_direction(part))) return part;
   return std::nullopt;
 }
 
-/// One block of the file, or the three of CIE-XYZ.
+/// One block of the file, or the three blocks of CIE-XYZ.
 struct FileBlock {
   BsdfBlock block;
   std::vector<pugi::xml_node> nodes;
@@ -41,7 +42,7 @@ const FileBlock* find_band(const std::vector<FileBlock>& blocks, BsdfPart part, 
   return found == blocks.end() ? nullptr : &*found;
 }
 
-/// Adds the colour of each part that has X, Y and Z.
+/// Adds a block of colour for each part that has X, Y and Z.
 void add_colours(std::vector<FileBlock>& blocks) {
   for (const BsdfPart part : kBsdfParts) {
     const FileBlock *x = find_band(blocks, part, "CIE-X"), *z = find_band(blocks, part, "CIE-Z"),
@@ -52,7 +53,7 @@ void add_colours(std::vector<FileBlock>& blocks) {
   }
 }
 
-/// The blocks that are none of `taken`, each named once: "Transmission Front (Visible)".
+/// Returns the names of blocks outside `taken`, each once: "Transmission Front (Visible)".
 std::vector<std::string> other_blocks(pugi::xml_node layer, const std::vector<pugi::xml_node>& taken) {
   std::vector<std::string> others;
   std::size_t more = 0;
@@ -72,7 +73,7 @@ std::vector<std::string> other_blocks(pugi::xml_node layer, const std::vector<pu
   return others;
 }
 
-/// What was taken: "'Reflection Back', the only reflection there is, visible spectrum".
+/// Describes the block that was read: "'Reflection Back', the only reflection there is, visible spectrum".
 std::string sentence_of(const std::vector<BsdfBlock>& blocks, const BsdfBlock& taken,
                         const OpenOptions& options) {
   std::string sentence = fmt::format("'{}'", window_direction(taken.part));

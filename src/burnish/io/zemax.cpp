@@ -21,7 +21,7 @@ constexpr std::size_t kMaxAngles = 4096;
 
 using Row = std::array<double, 3>;
 
-/// Linear Rec. 709 of XYZ relative to D65, rows R, G, B. Source: [ITU 2015].
+/// Converts XYZ relative to D65 to linear Rec. 709, rows R, G, B. Source: [ITU 2015].
 constexpr std::array<Row, 3> kRec709 = {
     // clang-format off
     {{ 3.2404542, -1.5371385, -0.4985314},
@@ -34,7 +34,7 @@ double product(const Row& row, const double* v) noexcept {
   return row[0] * v[0] + row[1] * v[1] + row[2] * v[2];
 }
 
-/// By cofactors, so that what is written is read back to rounding.
+/// Returns the inverse by cofactors, so that written values are read back to rounding.
 std::array<Row, 3> inverse(const std::array<Row, 3>& m) noexcept {
   std::array<Row, 3> result;
   const auto minor_of = [&](std::size_t r, std::size_t c) {
@@ -72,7 +72,7 @@ std::vector<double> read_angles(TextReader& reader, std::string_view keyword) {
 
 /// Reads keywords up to the block of the first channel.
 Header read_header(TextReader& reader) {
-  // keywords with a word or a list of angles, in any order but for the last
+  // Keywords have a word or a list of angles. They come in any order, but ScatterRadial is the last.
   Header header;
   while (header.angles.find("scatterradial") == header.angles.end()) {
     if (!reader.next_content_line()) reader.fail("the keyword ScatterRadial", "the end of the file");
@@ -89,7 +89,7 @@ Header read_header(TextReader& reader) {
     }
   }
 
-  // all of them there, with values that the format knows
+  // All keywords have to be there, with values that the format knows.
   for (const char* keyword : {"symmetry", "spectralcontent", "scattertype"})
     if (!header.words.contains(keyword)) reader.fail(fmt::format("the keyword {}", keyword), "none");
   for (const char* keyword : {"samplerotation", "angleofincidence", "scatterazimuth"})
@@ -127,10 +127,10 @@ std::vector<double> in_radians(const std::vector<double>& angles_deg, double off
   return angles;
 }
 
-/// What stands for a value of 0, since 0 is a hole.
+/// Written in place of a value of 0, since 0 is a hole.
 constexpr double kWrittenZero = 1e-30;
 
-/// A line of the keyword and the count, then one of the angles in degrees, less `offset_deg`.
+/// Appends a line of the keyword and the count, then one of the angles in degrees, less `offset_deg`.
 void append_angles(std::string& text, std::string_view keyword, const AngleAxis& axis,
                    double offset_deg = 0) {
   std::vector<double> angles;
@@ -138,7 +138,7 @@ void append_angles(std::string& text, std::string_view keyword, const AngleAxis&
   text += fmt::format("{}\t{}\n{}\n", keyword, angles.size(), fmt::join(angles, "\t"));
 }
 
-/// Middles between neighbours, and the ends themselves.
+/// Returns the middles between neighbours, and the two ends.
 std::vector<double> cell_borders(const std::vector<double>& nodes) {
   std::vector<double> borders = {nodes.front()};
   for (std::size_t i = 1; i < nodes.size(); ++i) borders.push_back(0.5 * (nodes[i - 1] + nodes[i]));
@@ -146,7 +146,8 @@ std::vector<double> cell_borders(const std::vector<double>& nodes) {
   return borders;
 }
 
-/// What of the circle each azimuth stands for, radians; in a folded table both sides.
+/// Returns the part of the circle that each azimuth stands for, in radians; in a folded table it counts both
+/// sides.
 std::vector<double> azimuth_widths(const AngleAxis& axis, bool folded) {
   if (axis.nodes.size() == 1) return {kTwoPi};
   const std::vector<double> borders = cell_borders(axis.nodes);
@@ -161,7 +162,7 @@ std::vector<double> azimuth_widths(const AngleAxis& axis, bool folded) {
   return widths;
 }
 
-/// Solid angle over 2 pi of the ring around each radial angle.
+/// Returns the solid angle over 2 pi of the ring around each radial angle.
 std::vector<double> ring_heights(const AngleAxis& axis) {
   const std::vector<double> borders = cell_borders(axis.nodes);
   std::vector<double> heights;
@@ -178,12 +179,12 @@ struct TableSizes {
   std::size_t entries() const noexcept { return blocks() * azimuths * radials; }
 };
 
-/// The data of one channel: for every block the integral TIS, then rows of azimuths. `entries` has one value an entry,
-/// `stride` apart.
+/// Reads the data of one channel: for every block the integral TIS, then rows of azimuths. Writes one value for each
+/// entry to `entries`, `stride` apart, and returns the TIS of the blocks.
 std::vector<double> read_channel(TextReader& reader, const TableSizes& sizes, double* entries,
                                  std::size_t stride) {
   std::vector<double> totals;
-  // the line that names the channel, then the data
+  // A line names the channel, then come the data.
   if (!reader.next_content_line()) reader.fail("a channel's name", "the end of the file");
   expect_keyword(reader, "databegin");
   std::size_t entry = 0;
@@ -205,23 +206,23 @@ std::vector<double> read_channel(TextReader& reader, const TableSizes& sizes, do
   return totals;
 }
 
-/// The luminance of what a channel or three say.
+/// Returns the luminance of one channel or of three.
 double luminance_of_channels(const std::vector<double>& values) noexcept {
   return values.size() == 1 ? values[0] : luminance({values[0], values[1], values[2]});
 }
 
-/// The integral of the values at a block's incidence.
+/// Returns the integral of the values at a block's incidence.
 double integral_of_block(const AngleTable& table, std::size_t rotation, std::size_t incidence,
                          double accuracy) {
   const Vec3 wi = spherical_direction(table.axes[1].nodes[incidence], table.axes[0].nodes[rotation]);
   return luminance_of_channels(directional_albedo(table, wi, accuracy).albedo);
 }
 
-constexpr double kTrustedTotal = 0.05;  // of TIS: quadrature and rounding
+constexpr double kTrustedTotal = 0.05;  // relative to TIS; allows for quadrature and rounding
 constexpr double kMostTotalTheta = radians(85);
 
-/// Compares the values' integrals at a few incidences of the first rotation with what TIS states of them, of the
-/// channel that is luminance.
+/// Compares the values' integrals at a few incidences of the first rotation with the stated TIS of the luminance
+/// channel.
 void check_totals(const AngleTable& table, const std::vector<double>& stated, Findings& findings) {
   constexpr std::size_t kMostIncidences = 4;
   constexpr double kAccuracy = 0.02;
@@ -245,8 +246,8 @@ void check_totals(const AngleTable& table, const std::vector<double>& stated, Fi
     findings.conventions.push_back("The values integrate to the stated TIS.");
 }
 
-/// Scales each block to its TIS, as Ansys does. Blocks without a positive TIS or integral, or near grazing, where the
-/// table ends, take the factor of the incidence before.
+/// Scales each block to its TIS, as Ansys does. Some blocks take the factor of the incidence before: those without a
+/// positive TIS or integral, and those near grazing, where the table ends.
 void scale_to_totals(AngleTable& table, const std::vector<double>& stated, Findings& findings) {
   const std::size_t rotations = table.axes[0].nodes.size(), incidences = table.axes[1].nodes.size();
   const std::size_t block = table.values.size() / (rotations * incidences);
@@ -267,7 +268,7 @@ void scale_to_totals(AngleTable& table, const std::vector<double>& stated, Findi
                                              std::ranges::min(factors), std::ranges::max(factors)));
 }
 
-/// Makes the table's values of what was read, grey or XYZ, and notes holes, negatives and angles.
+/// Fills the table with the values read, grey or XYZ, and notes holes, negative values and angles.
 void fill_values(const std::vector<double>& read, const Header& header, const TableSizes& sizes,
                  ZemaxFile& result) {
   const std::size_t channels = sizes.channels;
@@ -295,7 +296,7 @@ void fill_values(const std::vector<double>& read, const Header& header, const Ta
         findings.most_negative = std::min(findings.most_negative, static_cast<double>(value[c]));
       }
 
-    // theta_o, the same for every rotation of the sample
+    // theta_o is the same for every rotation of the sample.
     const std::size_t column = entry % radials.size(), row = entry / radials.size() % azimuths.size(),
                       incidence = entry / (radials.size() * azimuths.size()) % incidences.size();
     const Vec3 wo =
@@ -305,8 +306,8 @@ void fill_values(const std::vector<double>& read, const Header& header, const Ta
   }
 }
 
-/// Of every rotation and incidence the reflected share of the light: values times the cosine and the solid angle
-/// that each entry stands for.
+/// Returns the reflected share of the light at every rotation and incidence: the sum of values times the cosine
+/// and the solid angle that each entry stands for.
 std::vector<Row> block_integrals(const AngleTable& table) {
   const auto& axes = table.axes;
   const auto channels = table.channel_count;
@@ -324,7 +325,7 @@ std::vector<Row> block_integrals(const AngleTable& table) {
   return totals;
 }
 
-/// The comments of a file without their marks, as they are but for what no line can have.
+/// Returns the comments of a file without their marks. Control characters other than tabs become '?'.
 std::vector<std::string> comments_of(const FileBytes& file) {
   constexpr std::size_t kMost = 200, kLongest = 400;
   std::vector<std::string> comments;
@@ -338,7 +339,7 @@ std::vector<std::string> comments_of(const FileBytes& file) {
   return comments;
 }
 
-/// The remark "# Sample: ..." in front of the header.
+/// Returns the remark "# Sample: ..." in front of the header.
 std::string sample_name(const FileBytes& file) {
   TextReader reader(file);
   while (reader.next_line() && reader.line().starts_with('#')) {
@@ -370,7 +371,7 @@ ZemaxFile parse_zemax(const FileBytes& file, const OpenOptions& options) {
                          .azimuths = azimuths.size(),
                          .radials = radials.size(),
                          .channels = monochrome ? 1u : 3u};
-  // a value takes a digit and a separator
+  // A value takes at least a digit and a separator.
   const std::size_t values = sizes.entries() * sizes.channels;
   if (2 * values > reader.remaining() + 1)
     reader.fail(fmt::format("{} values", values), fmt::format("{} bytes to the end", reader.remaining()));
@@ -383,7 +384,7 @@ ZemaxFile parse_zemax(const FileBytes& file, const OpenOptions& options) {
                 make_axis(in_radians(azimuths), table.folded ? 0 : kTwoPi), make_axis(in_radians(radials))};
   table.channel_count = sizes.channels;
 
-  // the file has one channel after another, the table all of an entry together
+  // The file has one channel after another, the table all channels of an entry together.
   std::vector<double> read(values);
   std::vector<double> totals;
   for (std::size_t c = 0; c < sizes.channels; ++c) {
@@ -468,13 +469,14 @@ std::string format_zemax(const AngleTable& table, std::string_view sample,
   append_angles(text, "ScatterAzimuth", axes[2]);
   append_angles(text, "ScatterRadial", axes[3]);
 
-  // one channel after another; the integrals are what readers want, though the entries give them
+  // Channels follow one another. Each begins its blocks with TIS, which readers expect although the entries
+  // determine it.
   const auto to_xyz = inverse(kRec709);
   const std::vector<Row> totals = block_integrals(table);
   const std::size_t columns = axes[3].nodes.size(), block = axes[2].nodes.size() * columns;
   constexpr std::array kNames = {"TristimulusX", "TristimulusY", "TristimulusZ"};
   for (std::size_t c = 0; c < channels; ++c) {
-    // of the values of all channels, this one
+    // This channel is computed from the values of all channels.
     const auto channel = [&](const double* values) {
       return monochrome ? values[0] : product(to_xyz[c], values);
     };
