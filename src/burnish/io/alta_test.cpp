@@ -23,7 +23,7 @@ SampleFile read_row(std::string_view name, const std::vector<double>& coordinate
   return parse_alta(memory_file(text + "0.25\n"), {});
 }
 
-// The formulas of ALTA's from_cartesian, which its files are written with.
+// The formulas of ALTA's from_cartesian, which computes the coordinates in its files.
 struct Alta {
   Vec3 view, light;
   double theta(Vec3 w) const { return std::acos(w.z); }
@@ -65,7 +65,7 @@ TEST(Alta, FindsTheDirectionsOfEveryParameterization) {
     const auto [wi, wo] = samples.pairs.front();
     const std::string_view called = name;
     if (called == "NEUMANN_3D" || called == "STARK_3D") {
-      // to_cartesian of these exchanges what from_cartesian took
+      // For these kinds, to_cartesian exchanges light and view of from_cartesian.
       EXPECT_NEAR(wi.z, view.z, 1e-12) << name;
       EXPECT_NEAR(wo.z, light.z, 1e-12) << name;
       EXPECT_NEAR(dot(wi, wo), dot(light, view), 1e-12) << name;
@@ -79,7 +79,7 @@ TEST(Alta, FindsTheDirectionsOfEveryParameterization) {
     EXPECT_NEAR(length(wi - light), 0, 1e-12) << name;
     EXPECT_NEAR(length(wo - view), 0, 1e-12) << name;
   }
-  // its phi_d is 0
+  // This kind has phi_d = 0.
   const DirectionPair flat = read_row("RUSIN_TH_PH_TD", {0.3, 0.2, 0.4}).samples.pairs[0];
   const HalfDiff angles = to_half_diff(flat.wo, flat.wi);
   EXPECT_NEAR(angles.theta_h, 0.3, 1e-12);
@@ -92,11 +92,11 @@ TEST(Alta, TakesKeysForWhatTheySay) {
   EXPECT_TRUE(looks_like_alta(seeds::kAlta));
   const SampleFile seed = parse_alta(memory_file(seeds::kAlta), {});
   EXPECT_EQ(seed.findings.description, "seed");
-  EXPECT_EQ(seed.samples.values, (std::vector<double>{0.25, -0.1, 0.5}));  // intervals passed over
+  EXPECT_EQ(seed.samples.values, (std::vector<double>{0.25, -0.1, 0.5}));  // intervals are passed over
   const SampleFile weighted =
       read_row("SPHERICAL_TL_PL_TV_PV", {0.5, 0, 1.1, 2}, "#PARAM_OUT INV_STERADIAN_COSINE_FACTOR\n");
   EXPECT_NEAR(weighted.samples.values[0], 0.25 / std::cos(1.1), 1e-15);
-  // pi/2 of six digits is below the horizon
+  // pi/2 of six digits is below the horizon.
   EXPECT_EQ(read_row("SPHERICAL_TL_PL_TV_PV", {1.5708, 0, 1.1, 2}).samples.pairs.at(0).wi.z, 0);
 }
 

@@ -28,7 +28,7 @@ Source reread(const Converted& converted, const OpenOptions& options = {}) {
   return parse_source(memory_file(converted.bytes), options);
 }
 
-// How many entries there are, and that each is the source's value in its direction.
+// Returns the number of entries, and expects that each is the source's value in its direction.
 std::size_t expect_entries_of(const Source& table, BrdfRef source) {
   const Samples entries = table_entries(table);
   std::vector<double> f(source.channels());
@@ -36,7 +36,7 @@ std::size_t expect_entries_of(const Source& table, BrdfRef source) {
   double worst = 0;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const auto& [wi, wo] = entries.pairs[i];
-    // the last ring of an RGL file stands for 89 degrees
+    // The last ring of an RGL file stands for 89 degrees.
     if (std::min(wi.z, wo.z) < std::cos(radians(88.9)) || !source.eval(wi, wo, f)) continue;
     ++compared;
     for (std::size_t c = 0; c < f.size(); ++c) worst = std::max(worst, std::abs(entries.at(i)[c] / f[c] - 1));
@@ -56,7 +56,7 @@ TEST(Convert, MakesEachFileOfAModelFromTheOther) {
   EXPECT_EQ(exr.bytes, format_model(model));
   EXPECT_THAT(exr.losses, IsEmpty());
 
-  // by way of the other file; notes only where they are asked for
+  // The bytes are the same by way of the other file. Notes are written only if the options say so.
   const Converted whole = convert(reread(exr), "burnish", {.notes = true}), bare = convert(source, "burnish");
   EXPECT_THAT(whole.losses, IsEmpty());
   EXPECT_EQ(convert(reread(whole), "model").bytes, exr.bytes);
@@ -87,7 +87,7 @@ TEST(Convert, IsotropicFormatsGetTheMeanOverTheAzimuth) {
   }
 }
 
-// Files of every table, small ones.
+// Small tables of every format.
 std::vector<std::pair<std::string, Source>> tables() {
   std::vector<std::pair<std::string, Source>> all;
   const Source source = open_source(kGlossy, {});
@@ -118,12 +118,12 @@ TEST(Convert, EntriesSurviveInScatteredFormats) {
       ASSERT_NE(back.samples(), nullptr);
       ASSERT_EQ(back.samples()->size(), entries.size()) << format << " as " << scattered;
       EXPECT_TRUE(back.ref().isotropic());
-      double before = 0, after = 0;  // samples may come in another order
+      double before = 0, after = 0;  // Samples may come in another order.
       for (const double v : entries.values) before += v;
       for (const double v : back.samples()->values) after += v;
       EXPECT_NEAR(after, before, 1e-12 * before);
     }
-    break;  // one table of that size is enough
+    break;  // One table of that size is enough.
   }
 }
 
@@ -141,7 +141,7 @@ TEST(Convert, NamesCommentsThatStayBehindAndCallsNotesNoLoss) {
   zemax.findings.comments = {" Sample: panel 7", " lit from the left"};
   EXPECT_THAT(convert(zemax, "mbsdf", kSmall).losses,
               Contains("2 comments: 'Sample: panel 7', 'lit from the left'"));
-  // an MBSDF's own lines
+  // An MBSDF file has lines of its own.
   Source mbsdf = reread(convert(open_source("lambert", {}), "mbsdf", kSmall));
   mbsdf.findings.description = "MAKER=me";
   EXPECT_THAT(convert(mbsdf, "mbsdf").losses, testing::ElementsAre("the remark 'MAKER=me'"));
@@ -172,7 +172,7 @@ TEST(Convert, ScatteredSamplesStayBetweenCsvAndAstm) {
     for (const Source* s : {&second, &third}) {
       ASSERT_EQ(s->samples()->size(), 300u);
       EXPECT_EQ(s->ref().isotropic(), isotropic);
-      // at each sample of the first, there is one of the same angles and value
+      // Each sample of the first has one of the same angles and value in the second.
       const Samples& from = *first.samples();
       const Samples& to = *s->samples();
       for (std::size_t i = 0; i < from.size(); ++i) {
@@ -237,8 +237,7 @@ TEST(Convert, SaysWhatReadingLost) {
   EXPECT_THAT(convert(source, "csv").losses, Contains(HasSubstr("licence")));
 }
 
-// Readers of scattered files take no samples on the horizon, which ALTA's may hold.
-/// A Klems file with one patch a side, of this part and band beside a reflection.
+/// Returns a Klems file with one patch a side, of this part and band beside a reflection.
 std::string one_patch(std::string_view direction, std::string_view band) {
   const auto block = [](std::string_view named, std::string_view wavelength, std::string_view value) {
     return fmt::format(
@@ -273,7 +272,7 @@ TEST(Convert, WritesAPartBackToItsSideAndBand) {
   }
 }
 
-// MBSDF and Zemax files have no sides, and others no transmission.
+// MBSDF and Zemax files have no sides, and other formats no transmission.
 TEST(Convert, SaysThatASideABandOrTransmissionIsLost) {
   const Source source = parse_source(memory_file(one_patch("Transmission Back", "Solar")),
                                      {.part = BsdfPart::transmission_back});
@@ -299,6 +298,7 @@ TEST(Convert, SaysWhichPartASourceOfOnePartIs) {
               HasSubstr("expected band 'Solar', found reflection-front alone (MERL"));
 }
 
+// Readers of scattered files take no samples on the horizon, which ALTA's may hold.
 TEST(Convert, LeavesOutSamplesOnTheHorizon) {
   const Vec3 up{0, 0, 1}, level{1, 0, 0}, nearly{1, 0, 1e-17}, slanted = spherical_direction(1.5, 0);
   const Source scattered{
@@ -321,7 +321,8 @@ TEST(Convert, KeepsValuesBelowZero) {
               testing::UnorderedElementsAre(-1, 1));
 }
 
-// f depends on wi alone: neither reciprocal nor, where `side`, symmetric about the plane of incidence.
+// The value f depends on wi alone. The table is not reciprocal, and with `side` not symmetric about the plane
+// of incidence.
 Source lopsided_table(bool side) {
   AngleTable table;
   table.axes = {make_axis({0}), make_axis({0.2, 0.6, 1.0, 1.4}), make_axis({0.2, 0.6, 1.0, 1.4}),

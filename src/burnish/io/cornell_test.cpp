@@ -29,7 +29,7 @@ TEST(Cornell, ReadsWrappedRowsAndKeepsSpectraOnRequest) {
   EXPECT_EQ(file.findings.description, "Maker, Paint");
   EXPECT_NEAR(length(file.samples.pairs[0].wi - spherical_direction(0.5, 0)), 0, 1e-15);
   EXPECT_NEAR(length(file.samples.pairs[0].wo - spherical_direction(0.25, kPi)), 0, 1e-8);
-  EXPECT_EQ(file.samples.at(1)[0], -0.1);  // noise, kept
+  EXPECT_EQ(file.samples.at(1)[0], -0.1);  // noise is kept
   EXPECT_EQ(file.samples.at(1)[2], 0.5);
   EXPECT_EQ(file.findings.negative_count, 1u);
   EXPECT_EQ(file.findings.most_negative, -0.1);
@@ -75,7 +75,7 @@ TEST(Cornell, ReadsThreePaintsWithAPeakOppositeTheLight) {
     const auto& [wi, wo] = file.samples.pairs[brightest];
     EXPECT_LT(degrees(angle_between(mirror(wi), wo)), 6) << name;
     EXPECT_GT(degrees(theta_of(wi)), 60) << name;
-    // Interpolated, the same peak stands at 50 degrees.
+    // The same peak, interpolated, stands at 50 degrees.
     const ScatteredBrdf brdf(file.samples, SampleRule::mean_in_half_difference);
     const Vec3 light = spherical_direction(radians(50), 0);
     std::array<double, 3> at_mirror, aside;
@@ -85,7 +85,7 @@ TEST(Cornell, ReadsThreePaintsWithAPeakOppositeTheLight) {
   }
 }
 
-// The figures that scattered_brdf.h states for the default space.
+// scattered_brdf.h states these figures for the default space.
 TEST(Cornell, PaintsPredictTheirHeldOutSamples) {
   BURNISH_NEEDS_DATA();
   const std::array<std::pair<const char*, double>, 3> paints = {

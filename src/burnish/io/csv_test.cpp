@@ -98,8 +98,8 @@ TEST(Csv, SaysWhatIsWrong) {
   EXPECT_THAT(csv_error("# nothing\n"), HasSubstr("header"));
 }
 
-// What a program, a country and a habit make of one table: separators, decimals, quotes, ends of lines, names, units,
-// wavelengths, order, remarks and columns of one's own.
+// A form in which programs and countries write one table. Forms differ in separators, decimals, quotes, ends of
+// lines, names, units, wavelengths, order, remarks and columns of one's own.
 struct Dialect {
   char separator = ',';
   bool decimal_comma = false, quotes = false, upper = false, reversed = false, commented = false;
@@ -107,8 +107,8 @@ struct Dialect {
   std::array<std::string, 4> angles = {"theta_i", "phi_i", "theta_o", "phi_o"};
   std::string value = "value_{}";
   bool extra = false;
-  std::string wavelength;  ///< a column of that name: a row is of one
-  double of_nm = 1;        ///< its unit
+  std::string wavelength;  ///< name of a column of wavelengths, if a row has one wavelength
+  double of_nm = 1;        ///< the unit of that column in nanometres
 };
 
 std::string in_dialect(const Dialect& d, const Samples& samples, std::span<const double> lambda_nm) {
@@ -222,7 +222,7 @@ TEST(Csv, ReadsTheSameOfEveryDialect) {
   }
 }
 
-// Cornell's files say what stands in their rows, which are no table of columns.
+// A comment of Cornell's files describes their rows, which are no table of columns.
 TEST(Csv, TakesNoCommentForAHeaderThatItsRowsDoNotFit) {
   EXPECT_FALSE(
       looks_like_csv("# theta i, phi i, theta s, phi_s, spectrum\n2\n400 500\n0.5 0 0.25 3.14 0.1 0.2\n"));
@@ -231,7 +231,7 @@ TEST(Csv, TakesNoCommentForAHeaderThatItsRowsDoNotFit) {
 
 TEST(Csv, MakesSpectraOfRowsOfOneWavelength) {
   const std::string header = "theta_i,phi_i,theta_o,phi_o,wavelength,value\n";
-  // in any order; a direction that lacks one is left out
+  // Rows come in any order; a direction that lacks a wavelength is left out.
   const SampleFile file = parse_csv(
       memory_file(header +
                   "10,0,20,0,650,3\n10,0,20,0,450,1\n30,0,20,0,450,5\n10,0,40,0,450,7\n10,0,40,0,650,8\n"),
@@ -248,7 +248,7 @@ TEST(Csv, MakesSpectraOfRowsOfOneWavelength) {
 }
 
 TEST(Csv, TellsWhatValuesAreByNameOrOption) {
-  // f_r 0.5 at theta_i 60 and theta_o 30 degrees
+  // f_r is 0.5 at theta_i 60 and theta_o 30 degrees.
   const auto f = [](std::string_view name, double value, const OpenOptions& options = {}) {
     const auto file = parse_csv(
         memory_file(fmt::format("theta_i,phi_i,theta_o,phi_o,{}\n60,0,30,90,{}\n", name, value)), options);
@@ -269,14 +269,14 @@ TEST(Csv, TellsWhatValuesAreByNameOrOption) {
   EXPECT_NEAR(f("value", 0.5 * cos_o, {.has_cosine_o = true}), 0.5, 1e-12);
   EXPECT_NEAR(f("value", 0.5 * cos_i, {.has_cosine = true}), 0.5, 1e-12);
   EXPECT_THROW(f("value", 1, {.has_cosine = true, .brf = true}), Error);
-  // of several, f_r itself; the others are named
+  // If several columns hold values, f_r itself is read and the other columns are named.
   const auto both =
       parse_csv(memory_file("theta_i,phi_i,theta_o,phi_o,CCBRDF,BRDF,BRF\n60,0,30,90,1,2,3\n"), {});
   EXPECT_EQ(both.samples.values, std::vector<double>{2});
   EXPECT_THAT(both.findings.warnings, ElementsAre("Columns passed over: 'CCBRDF', 'BRF'."));
 }
 
-// A field goniometer's table: two lines of remarks, which say what the values are.
+// A field goniometer's table begins with two lines of remarks, which state the kind of the values.
 TEST(Csv, ReadsTablesOfReflectanceFactorsByTheirRemarks) {
   const std::string text =
       "BRF Values\nsample panel\nsrc_z\tsrc_a\tview_z\tview_a\t450.00nm\t550.00nm\t650.00nm\n"
@@ -298,14 +298,15 @@ TEST(Csv, LeavesOutRowsWithoutAValueAndNamesColumnsItPassesOver) {
   EXPECT_EQ(file.samples.values, std::vector<double>{1});
   EXPECT_THAT(file.findings.warnings,
               ElementsAre("Columns passed over: 'weight', 'note'.", "2 rows without a value were left out."));
-  // what stands at the horizon cannot be divided by its cosine
+  // A value at the horizon cannot be divided by its cosine.
   const SampleFile grazing =
       parse_csv(memory_file("theta_i,phi_i,theta_o,phi_o,CCBRDF\n10,0,90,0,0.1\n10,0,60,0,0.1\n"), {});
   EXPECT_THAT(grazing.samples.values, ElementsAre(DoubleNear(0.2, 1e-12)));
   EXPECT_THAT(grazing.findings.warnings, ElementsAre(HasSubstr("1 rows on the horizon")));
 }
 
-/// theta_i 30 and 60 degrees; a peak at `peak` times theta_i in the plane of incidence.
+/// Returns a table of theta_i 30 and 60 degrees with a peak at `peak` times theta_i in the plane of
+/// incidence.
 std::string plane(double peak) {
   std::string text = "theta_i,theta_o,value\n";
   for (const int theta_i : {30, 60})
@@ -330,7 +331,7 @@ TEST(Csv, FindsTheMirrorDirectionOfSignedAnglesByTheirPeak) {
     EXPECT_THAT(file.findings.conventions,
                 Contains(HasSubstr(peak > 0 ? "theta_o = theta_i, where" : "theta_o = -theta_i")));
   }
-  // without a peak angles are counted alike on both sides of the normal
+  // Without a peak, angles count alike on both sides of the normal.
   const SampleFile flat = parse_csv(memory_file("theta_i,theta_o,value\n30,-30,1\n30,30,1\n"), {});
   EXPECT_NEAR(length(flat.samples.pairs[0].wo - mirror(flat.samples.pairs[0].wi)), 0, 1e-12);
 }
@@ -355,7 +356,7 @@ TEST(Csv, SuspectsRadiansAndAzimuthsThatAreCountedOtherwise) {
               ElementsAre(HasSubstr("radians have names such as theta_i_rad")));
   EXPECT_THAT(warnings(header + "0.5,0,3.3,3.14,1\n"), IsEmpty());
   EXPECT_THAT(warnings("theta_i (deg),phi_i,theta_o,phi_o,value\n0.5,0,0.6,3.14,1\n"), IsEmpty());
-  // a peak at phi_o = phi_i, and one in the mirror direction
+  // One peak lies at phi_o = phi_i, and one in the mirror direction.
   const auto peak_at = [&](int phi) {
     std::string text = header;
     for (const int theta_i : {20, 40, 60})
@@ -394,7 +395,7 @@ TEST(TexelCsv, HasWhatTheColumnsSay) {
   EXPECT_EQ(read.held_out, (std::vector<std::uint8_t>{0, 1, 0}));
   EXPECT_EQ(read.pairs[1], (DirectionPair{{0, 0.6, 0.8}, {0, 0, 1}}));
   EXPECT_EQ(read.f[2], (std::array<float, 3>{4, 5, 6}));
-  // degrees, one channel, any order of columns
+  // This file has degrees, one channel and columns in another order.
   const TexelCsv grey =
       parse_texel_csv(memory_file("value,theta_i,phi_i,theta_o,phi_o,texel_y,texel_x\n2,60,0,0,0,7,3\n"), 7);
   EXPECT_EQ(grey.texels, (std::vector<std::array<int, 2>>{{3, 7}}));

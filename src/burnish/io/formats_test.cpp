@@ -15,7 +15,8 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// That a file looks like this format before all others, and like no other of the same way of telling but by columns.
+/// Expects that a file looks like this format first, among those recognized in the same way. It may look like no
+/// other of them unless they are recognized by columns.
 void expect_only(const Format& expected, const FileBytes& file) {
   std::vector<std::string_view> titles;
   for (const Format& format : formats())
@@ -80,7 +81,7 @@ TEST(Formats, HaveASmallFileEach) {
     const Format* binary = binary_format_of(file);
     with_seed.insert((binary ? binary : text_format_of(file))->title);
   }
-  // UTIA's files are large; the others are no BRDF by themselves
+  // UTIA's files are large; the other formats here are no BRDF by themselves.
   const std::set<std::string_view> tried_apart{"UTIA", "surface", "book of a library",
                                                "Neural Processes codes"};
   for (const Format& format : formats())

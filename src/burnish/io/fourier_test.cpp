@@ -17,7 +17,7 @@ using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Cosines as layerlab writes them: `half` on each side, and 0 twice.
+/// Returns cosines as layerlab writes them: `half` on each side, and 0 twice.
 std::vector<float> cosines(int half) {
   std::vector<float> mu;
   for (int k = half; k >= 0; --k) mu.push_back(-static_cast<float>(k) / static_cast<float>(half));
@@ -25,13 +25,13 @@ std::vector<float> cosines(int half) {
   return mu;
 }
 
-/// Of albedo 0.2, reflected above alone.
+/// Returns the series of a Lambertian surface of albedo 0.2, which reflects above alone.
 std::vector<float> lambert(float mu_i, float mu_o) {
   if (!(mu_i < 0 && mu_o > 0)) return {};
   return {-mu_i * static_cast<float>(0.2 / kPi)};
 }
 
-/// Something else for each pair and order.
+/// Returns different coefficients for each pair and order.
 std::vector<float> varied(float mu_i, float mu_o) {
   if (!(mu_i < 0 && mu_o > 0)) return {};
   return {2 - mu_i, mu_o, 0.25f * mu_i * mu_o};
@@ -53,7 +53,7 @@ TEST(Fourier, IsLambertianWhereTheSeriesAre) {
   EXPECT_EQ(file.findings.description, "grey paint");
   EXPECT_EQ(file.findings.sample_count, 64u);
   EXPECT_TRUE(file.brdf.isotropic());
-  // a straight line is its own spline, up to the last interval before the horizon
+  // A straight line is its own spline, up to the last interval before the horizon.
   for (const double mu_i : {0.3, 0.5, 0.77, 1.0})
     for (const double mu_o : {0.3, 0.6, 1.0})
       EXPECT_NEAR(value(file.brdf, at_cosine(mu_i, 0.3), at_cosine(mu_o, 2)), 0.2 / kPi, 1e-8);
@@ -66,10 +66,10 @@ TEST(Fourier, HasTheSeriesAtItsNodes) {
   for (const double mu_i : {0.25, 0.5, 1.0})
     for (const double mu_o : {0.5, 0.75})
       for (const double phi : {0.0, 0.4, 1.9, kPi}) {
-        // -wi has the azimuth of wi + pi
+        // The azimuth of -wi is that of wi plus pi.
         const double expected =
             (2 + mu_i + mu_o * std::cos(phi) - 0.25 * mu_i * mu_o * std::cos(2 * phi)) / mu_i;
-        const double azimuth = mu_i == 1 ? 0 : phi;  // the zenith has none
+        const double azimuth = mu_i == 1 ? 0 : phi;  // the zenith has no azimuth
         const double of_zenith = (2 + mu_i + mu_o - 0.25 * mu_i * mu_o) / mu_i;
         EXPECT_NEAR(value(file.brdf, at_cosine(mu_i, 0.7), at_cosine(mu_o, 0.7 + kPi + azimuth)),
                     mu_i == 1 ? of_zenith : expected, 1e-6)
@@ -78,14 +78,14 @@ TEST(Fourier, HasTheSeriesAtItsNodes) {
 }
 
 TEST(Fourier, IsASplineBetweenNodes) {
-  // f |mu_i| = mu_o^2 at cosines 0, 1/4, 1/2 ...: at 5/8 the slopes are exact, and so is the parabola
+  // f |mu_i| = mu_o^2 at cosines 0, 1/4, 1/2 and so on. At 5/8 the slopes are exact, and so is the parabola.
   const auto square = [](float mu_i, float mu_o) -> std::vector<float> {
     if (!(mu_i < 0 && mu_o > 0)) return {};
     return {mu_o * mu_o};
   };
   const FourierFile file = parse_fourier(memory_file(seeds::fourier_bytes(cosines(4), 1, square)));
   EXPECT_NEAR(value(file.brdf, at_cosine(0.5, 1), at_cosine(0.625, 2)), 0.625 * 0.625 / 0.5, 1e-7);
-  // in the last interval the slope at 1 is that of the interval: 7/4 instead of 2
+  // In the last interval the slope at 1 is that of the interval: 7/4 instead of 2.
   const double t = 0.5, excess = (t * t * t - t * t) * 0.25 * (7.0 / 4 - 2);
   EXPECT_NEAR(value(file.brdf, at_cosine(0.5, 1), at_cosine(0.875, 2)), (0.875 * 0.875 + excess) / 0.5, 1e-7);
 }
@@ -116,7 +116,7 @@ TEST(Fourier, CutsWhatIsBelowZero) {
 
 TEST(Fourier, SaysWhatIsWrong) {
   const std::string whole = seeds::fourier_bytes(cosines(2), 1, varied);
-  // a word of the header, or behind it
+  // The word replaces one of the header, or one behind it.
   const auto error = [&](std::size_t at, auto word) {
     std::string bytes = whole;
     bytes.replace(at, sizeof(word), reinterpret_cast<const char*>(&word), sizeof(word));

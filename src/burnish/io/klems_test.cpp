@@ -70,7 +70,7 @@ TEST(Klems, ReadsTheMatrixOfTheChosenSide) {
   EXPECT_EQ(front.findings.negative_count, 1u);
   const Vec3 normal{0, 0, 1}, plus_x = spherical_direction(kPi / 3, 0), minus_x = mirror(plus_x);
   double f;
-  front.table.eval(minus_x, minus_x, {&f, 1});  // light that travels to +x
+  front.table.eval(minus_x, minus_x, {&f, 1});  // the light travels to +x
   EXPECT_NEAR(f, 8, 1e-6);
   front.table.eval(normal, plus_x, {&f, 1});
   EXPECT_NEAR(f, 4, 1e-6);
@@ -106,7 +106,7 @@ TEST(Klems, TakesTheVisibleBlockAndNamesTheOthers) {
   EXPECT_EQ(at_normal(alone), 9);
   EXPECT_THAT(alone.findings.conventions.front(), HasSubstr("Solar, no Visible block"));
   EXPECT_THAT(alone.findings.left_out, IsEmpty());
-  // colour is left out, and said
+  // Blocks of colour are left out, and the findings name them.
   const auto colour =
       parse_klems(memory_file(window(kBasis, matrix("Reflection Front", "9 9 9 9 9 9 9 9 9", "CIE-X") +
                                                  matrix("Reflection Front", kValues) +
@@ -129,7 +129,7 @@ TEST(Klems, TakesTheOnlyReflectionThereIs) {
               HasSubstr("'Reflection Front', the only reflection there is"));
 }
 
-// The four parts of a sheet, and a second band of two of them.
+// A sheet with four parts, and a second band of two of them.
 std::string sheet() {
   return window(kBasis, matrix("Transmission Front", "1 2 3 4 5 6 7 8 9") +
                             matrix("Transmission Back", "11 12 13 14 15 16 17 18 19", "visible") +
@@ -163,12 +163,12 @@ TEST(Klems, ReadsEachPartInEachBand) {
   }
 }
 
-// wo is mirrored through the surface: light that goes straight on leaves in the mirror direction.
+// wo is mirrored through the surface, so light that goes straight on leaves in the mirror direction.
 TEST(Klems, TransmissionHasTheMirrorDirectionStraightOn) {
   const auto file = parse_klems(memory_file(sheet()), {.part = BsdfPart::transmission_front});
   const Vec3 plus_x = spherical_direction(kPi / 3, 0), minus_x = mirror(plus_x);
   double f;
-  file.table.eval(plus_x, minus_x, {&f, 1});  // light that travels to -x, in the patch of -x
+  file.table.eval(plus_x, minus_x, {&f, 1});  // light travels to -x, in the patch of -x
   EXPECT_EQ(f, 9);
   file.table.eval(minus_x, minus_x, {&f, 1});
   EXPECT_EQ(f, 8);
@@ -217,7 +217,7 @@ TEST(Klems, ReadsColourAsThreeChannels) {
   file.table.eval({0, 0, 1}, {0, 0, 1}, f);
   EXPECT_GT(f[2], 0.35) << "more Z is more blue";
   EXPECT_LT(f[1], f[2]);
-  // a band of its own is grey
+  // CIE-Z alone is grey.
   EXPECT_EQ(parse_klems(memory_file(text), {.band = "CIE-Z"}).table.channels(), 1u);
 }
 
@@ -244,7 +244,7 @@ TEST(Klems, KnowsTheBasesByNameInAnyCase) {
     const auto file = parse_klems(memory_file(window("", text, "columns")), {});
     EXPECT_EQ(file.table.values.size(), static_cast<std::size_t>(count * count)) << name;
     double f;
-    // the mirror direction has the same patch
+    // The mirror direction has the same patch.
     for (const Vec3 wi : {Vec3{0, 0, 1}, spherical_direction(0.6, 0.2), spherical_direction(1.3, 4)}) {
       file.table.eval(wi, mirror(wi), {&f, 1});
       EXPECT_EQ(f, 0.5) << name;
@@ -289,7 +289,7 @@ TEST(Klems, ReadsAShadeFabricThatReflectsLessThanItGets) {
     const auto file = parse_klems(bytes, options);
     const PatchTable& table = file.table;
     ASSERT_EQ(table.values.size(), 145u * 145);
-    // Albedo of every incident patch, and the fabric's own reciprocity.
+    // The sums give the albedo of every incident patch, and how far the fabric itself is from reciprocity.
     double asymmetry = 0, sum = 0;
     for (std::size_t i = 0; i < 145; ++i) {
       double albedo = 0;
@@ -319,8 +319,8 @@ TEST(Klems, ReadsAShadeFabricThatReflectsLessThanItGets) {
 constexpr double kPairsOfRadiance[][4] = {
     {10, 20, 12, 205}, {40, 100, 38, 275}, {60, 230, 22, 70}, {70, 310, 72, 125}, {30, 0, 50, 90}};
 
-// Values that Radiance 6.0a gives, by bsdf.query of pyradiance 1.3.1. Its front, z > 0, is the file's back. Of the pairs
-// that tests/bsdf/radiance.py draws, none is more than 3e-4 off.
+// Radiance 6.0a gives these values, by bsdf.query of pyradiance 1.3.1. Its front, z > 0, is the file's back. No value
+// of the pairs that tests/bsdf/radiance.py draws is more than 3e-4 off.
 TEST(Klems, EvaluatesEachPartAsRadianceDoes) {
   BURNISH_NEEDS_DATA();
   const FileBytes bytes = read_file(data_folder() / "klems" / "mecho_shade_fabric_aniso.xml");
@@ -344,8 +344,8 @@ TEST(Klems, EvaluatesEachPartAsRadianceDoes) {
   }
 }
 
-// Shares of light that LBNL's window engine gives (pywincalc 3.3.1, of the same matrices with their values between
-// commas). Its front is the file's front, and its azimuth is turned by 180 degrees: it is the one of the patch.
+// LBNL's window engine gives these shares of light (pywincalc 3.3.1, from the same matrices with commas between
+// values). Its front is the file's front. Its azimuth is the patch's, turned by 180 degrees.
 TEST(Klems, HasTheSidesOfTheWindowEngineAndItsAzimuthsTurned) {
   BURNISH_NEEDS_DATA();
   const FileBytes bytes = read_file(data_folder() / "klems" / "mecho_shade_fabric_aniso.xml");

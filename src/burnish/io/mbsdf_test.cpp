@@ -39,7 +39,7 @@ std::string mbsdf_error(const std::string& bytes) {
 }
 
 TEST(Mbsdf, PutsEntriesAtCellCentres) {
-  // [theta_in][theta_out][phi], 2 x 2 x 2
+  // The block is [theta_in][theta_out][phi], 2 x 2 x 2.
   const auto file = parse_mbsdf(memory_file(kStart + block(kReflection, 0, 2, 2, {1, 2, 3, 4, 5, 6, 7, 8})));
   EXPECT_EQ(file.findings.sample_count, 8u);
   EXPECT_EQ(file.table.channels(), 1);
@@ -100,7 +100,7 @@ TEST(Mbsdf, ReadsTransmissionWhereItIsAskedForOrAlone) {
     EXPECT_EQ(file.table.values, (std::vector<float>{9, 10}));
     EXPECT_TRUE(file.findings.transmits());
     EXPECT_TRUE(file.findings.warnings.empty());
-    // light that goes straight on is at azimuth pi
+    // Light that goes straight on is at azimuth pi.
     const Vec3 wi = spherical_direction(0.7, 2);
     double f;
     ASSERT_TRUE(file.table.eval(wi, mirror(wi), {&f, 1}));

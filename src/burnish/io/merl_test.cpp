@@ -14,7 +14,7 @@
 namespace burnish {
 namespace {
 
-/// A MERL file of `sizes` whose stored value is 1500 in every channel.
+/// Returns a MERL file of `sizes` whose stored value is 1500 in every channel.
 FileBytes constant_file(std::array<std::int32_t, 3> sizes) {
   const auto entries = static_cast<std::size_t>(sizes[0] * sizes[1] * sizes[2]);
   FileBytes file{"test.binary", std::vector<std::byte>(12 + entries * 24)};
@@ -103,7 +103,7 @@ TEST(Merl, RoundTripsASource) {
   for (const auto& [wi, wo] : draw_pairs(5000, 1, true)) {
     ASSERT_TRUE(merl.table.eval(wi, wo, f));
     source.eval(wi, wo, truth);
-    // Curvature of pow(cos, 8) over one cell: 1/8 (pi/2 / 45)^2 8.
+    // The bound is the curvature of pow(cos, 8) over one cell: 1/8 (pi/2 / 45)^2 8.
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(f[c], truth[c], 1.3e-3);
   }
 }

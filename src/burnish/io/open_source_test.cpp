@@ -92,7 +92,7 @@ TEST(Source, OpensEveryRealMeasurementWithAPlausibleAlbedo) {
       for (const double theta : {0.0, 30.0, 60.0}) {
         const auto [albedo, clamped, unknown] =
             directional_albedo(source.ref(), spherical_direction(radians(theta), 0));
-        // raw, a colour outside the gamut may be below zero
+        // Raw values of a colour outside the gamut may be below zero.
         for (std::size_t c = 0; c < albedo.size(); ++c) {
           EXPECT_TRUE(unknown > 0.5 || clamped[c] > 0) << entry.path();
           EXPECT_LT(clamped[c], 1.05) << entry.path() << " at " << theta;

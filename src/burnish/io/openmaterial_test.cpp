@@ -84,7 +84,7 @@ TEST(OpenMaterial, IsWrittenAndReadToTheLastBit) {
 }
 
 TEST(OpenMaterial, KeepsColoursToTheirLastDigits) {
-  // saturated ones too, each of which has a spectrum without values below zero
+  // Saturated colours are among these; each has a spectrum without values below zero.
   Samples samples{.channels = 3, .isotropic = true, .pairs = {}, .values = {}};
   const double colours[][3] = {{1, 0, 0},        {0, 1, 0},    {0, 0, 1}, {0, 0.7, 0.7},
                                {0.9, 0.01, 0.3}, {40, 41, 39}, {0, 0, 0}};
@@ -116,7 +116,7 @@ TEST(OpenMaterial, KeepsLicenceAuthorsAndOrigin) {
   const auto written = nlohmann::json::parse(converted.bytes)["metadata"];
   for (const auto& [key, value] : document["metadata"].items()) EXPECT_EQ(written[key], value) << key;
   EXPECT_EQ(parse_source(memory_file(converted.bytes), {}).findings.origin, source.findings.origin);
-  // what nobody said is unknown, as the schema asks for these members
+  // Members that the source does not state are "unknown", because the schema demands them.
   document["metadata"] = {{"name", "x"}};
   const Source silent = parse_source(memory_file(document.dump()), {.keep_spectral = true});
   const auto other = nlohmann::json::parse(convert(silent, "openmaterial", {}).bytes)["metadata"];
@@ -126,7 +126,7 @@ TEST(OpenMaterial, KeepsLicenceAuthorsAndOrigin) {
 }
 
 TEST(OpenMaterial, AveragesSamplesOfTheSameAngles) {
-  // a repeated row, a turned one, and two beyond the schema's pi/2
+  // The samples have a repeated row, a turned one, and two beyond the schema's pi/2.
   const Vec3 low = spherical_direction(0.5, 0), high = spherical_direction(0.7, kPi);
   const Vec3 grazing = spherical_direction(1.5707961, 0), lower = spherical_direction(1.5707962, 0);
   const Samples samples{.channels = 1,
@@ -168,7 +168,7 @@ TEST(OpenMaterial, ReadsAsphaltAsItsOwnJsonHasIt) {
     EXPECT_EQ(file.samples.at(sample)[band], rows[row][4].get<double>());
     EXPECT_NEAR(theta_of(wi), rows[row][1].get<double>(), 1e-12);
     EXPECT_NEAR(theta_of(wo), theta_o, 1e-12);
-    if (theta_o == 0) continue;  // of no azimuth
+    if (theta_o == 0) continue;  // the normal has no azimuth
     EXPECT_NEAR(std::remainder(phi_of(wo) - phi_of(wi) - rows[row][3].get<double>(), kTwoPi), 0, 1e-12);
   }
   const std::string again = format_openmaterial(file.samples, file.findings.lambda_nm, "asphalt").text;

@@ -66,7 +66,7 @@ std::vector<double> values_of(const RglTable& table, std::uint64_t seed = 1) {
   return all;
 }
 
-/// The fields of a written table, changed before they are written again.
+/// A field of a written table. Tests change fields before they write them again.
 struct Field {
   TensorType type;
   std::vector<std::uint64_t> shape;
@@ -217,7 +217,7 @@ TEST(Rgl, MissingFieldsThrow) {
   }
 }
 
-// What is changed in a file, and what its message says.
+// A change of a file, and a phrase of the message that it causes.
 struct BadField {
   std::function<void(EditedFile&)> change;
   const char* what;
@@ -339,7 +339,7 @@ TEST_F(RglMeasurements, AreNearlyReciprocalAndDoNotCreateLight) {
     double difference = 0, size = 0, albedo = 0;
     constexpr int kPairs = 4000;
     for (int i = 0; i < kPairs; ++i) {
-      // wo fixed, wi by the cosine: the mean of f is albedo / pi.
+      // wo is fixed and wi drawn by the cosine, so the mean of f is albedo / pi.
       const double u = random.uniform();
       const Vec3 wi = spherical_direction(std::acos(std::sqrt(u)), random.uniform() * kTwoPi);
       const Vec3 wo = spherical_direction(0.6, 0.3);

@@ -38,7 +38,7 @@ TEST(FinishSamples, CountsWhatIsThereAndKeepsNegatives) {
   EXPECT_NEAR(file.findings.theta_o_max, 1.1, 1e-15);
 }
 
-// A spectrum that is the same everywhere is white, which has three equal channels of its value.
+// A spectrum that is the same everywhere is white: three equal channels of its value.
 TEST(FinishSamples, TurnsSpectraIntoColoursUnlessTheyAreKept) {
   const std::vector<double> lambda_nm{420, 500, 560, 630, 700};
   SampleFile colours = scattered(5, lambda_nm), kept = scattered(5, lambda_nm), one = scattered(1, {550});
@@ -51,7 +51,7 @@ TEST(FinishSamples, TurnsSpectraIntoColoursUnlessTheyAreKept) {
   finish_samples("a.brdf", {.keep_spectral = true}, kept);
   EXPECT_EQ(kept.samples.channels, 5u);
   EXPECT_EQ(kept.findings.lambda_nm, lambda_nm);
-  finish_samples("a.brdf", {}, one);  // which is no spectrum
+  finish_samples("a.brdf", {}, one);  // a single wavelength is no spectrum
   EXPECT_EQ(one.samples.channels, 1u);
 }
 

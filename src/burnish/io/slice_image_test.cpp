@@ -25,7 +25,7 @@ TEST(SliceImage, ShowsEveryEntryAtItsPlace) {
   const auto path = folder.path / "slices.exr";
   write_then_rename(path, format_slice_image(table));
   Imf::InputFile file(path.c_str());
-  // 3 slices across, 2 down
+  // The picture has 3 slices across and 2 down.
   ASSERT_EQ(file.header().dataWindow().max.x, 11);
   ASSERT_EQ(file.header().dataWindow().max.y, 5);
   std::vector<float> green(12 * 6), alpha(12 * 6);

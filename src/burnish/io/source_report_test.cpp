@@ -38,7 +38,7 @@ TEST(SourceReport, SaysWhatAFormulaReflects) {
   EXPECT_FALSE(report_of(analytic_source("ggx:alpha_x=0.2,alpha_y=0.4")).contains("mirror_asymmetry"));
 }
 
-/// A white surface's goniometer table, theta up to 60 degrees.
+/// Returns a white surface's goniometer table, theta up to 60 degrees.
 Source white_table(double value, const OpenOptions& options) {
   std::string text = "theta_i,phi_i,theta_o,phi_o,value\n";
   for (const int theta_i : {0, 30, 60})
@@ -64,7 +64,7 @@ TEST(SourceReport, TakesAnUnknownRimForTheRest) {
   EXPECT_NEAR(albedo["albedo"][0].get<double>(), 0.5, 0.001);
 }
 
-// A tenth of the light goes into one patch, whose borders no quadrature knows.
+// A tenth of the light goes into one patch. No quadrature knows its borders.
 TEST(SourceReport, SumsPatchesExactly) {
   const PatchBasis basis = klems_full_basis();
   PatchTable mirror{basis, basis, std::vector<float>(basis.size() * basis.size(), 0.0f)};
@@ -79,7 +79,7 @@ TEST(SourceReport, SaysWhatAModelIsMadeOf) {
   const FactoredBrdf model =
       random_model("p(wo) q(h) p(wi) + r(theta_d)", {"p=5x5", "q=9", "r=4,shared"}, 3, TableFormat::half);
   const nlohmann::json json = report_of({.name = "m\xff", .brdf = model, .findings = {}});
-  EXPECT_EQ(json["name"], "m\xef\xbf\xbd");  // names need not be UTF-8, JSON has to
+  EXPECT_EQ(json["name"], "m\xef\xbf\xbd");  // names need not be UTF-8, but JSON has to be
   EXPECT_EQ(json["bytes"], model.bytes());
   EXPECT_EQ(json["table_bytes"], model.table_bytes());
   EXPECT_EQ(json["lobes"], 2);

@@ -25,7 +25,7 @@ double value(const AngleTable& table, Vec3 wi, Vec3 wo, std::size_t channel = 0)
   return f[channel];
 }
 
-// A white Lambertian surface's intensities at two wavelengths.
+// Returns a white Lambertian surface's intensities at two wavelengths.
 std::string brdf_text(double reflectance) {
   std::string text =
       "OPTIS - brdf surface file v9.0\n0\nScattering surface\n0\n\n1\t0\n1\n2\t2\n0\t60\n450\t650\n";
@@ -45,16 +45,16 @@ TEST(Speos, TurnsRotationsAndAzimuthsIntoOurs) {
   EXPECT_EQ(file.findings.lambda_nm, (std::vector<double>{450, 650}));
   EXPECT_EQ(file.findings.description, "seed");
   EXPECT_EQ(file.findings.negative_count, 2u);
-  // light that travels to +x, rotation 0: phi = 120 degrees is 120 degrees from +x
+  // Light travels to +x at rotation 0, so phi = 120 degrees is 120 degrees from +x.
   const Vec3 wi = spherical_direction(radians(30), kPi);
   const double at_120 = value(table, wi, spherical_direction(radians(60), radians(120)));
   const double at_240 = value(table, wi, spherical_direction(radians(60), radians(240)));
   EXPECT_NEAR(at_120 / at_240, 0.5 / 0.6, 1e-6);
-  // twice the reflectance, twice the value; the cosine is divided out
+  // Twice the reflectance gives twice the value, and the cosine is divided out.
   EXPECT_NEAR(value(table, wi, spherical_direction(radians(60), 0), 1),
               2 * value(table, wi, spherical_direction(radians(60), 0)), 1e-6);
   EXPECT_NEAR(value(table, wi, {0, 0, 1}) / at_120, 1 / (0.5 / std::cos(radians(60))), 1e-6);
-  // rotated by 90 degrees light travels to -y
+  // Rotated by 90 degrees, light travels to -y.
   const Vec3 turned = spherical_direction(radians(30), kPi / 2);
   EXPECT_LT(value(table, turned, spherical_direction(radians(60), radians(30))), 0);
   EXPECT_THAT(parse_speos(memory_file(seeds::kSpeos), {}).findings.illuminant, "equal energy");
@@ -67,11 +67,11 @@ TEST(Speos, ScalesABrdfToItsReflectanceUnlessItHasIt) {
   EXPECT_TRUE(kept.table.isotropic());
   EXPECT_NEAR(value(kept.table, wi, wo), 0.25, 1e-7);
   const SpeosFile scaled = parse_speos(memory_file(brdf_text(reflectance / 2)), {.keep_spectral = true});
-  EXPECT_NEAR(value(scaled.table, wi, wo), 0.125, 1e-4);  // of the quadrature
+  EXPECT_NEAR(value(scaled.table, wi, wo), 0.125, 1e-4);  // tolerance of the quadrature
   EXPECT_EQ(parse_speos(memory_file(brdf_text(reflectance)), {}).table.channels(), 3);
 }
 
-// Four polar angles of a constant: a sum of trapezoids has 18.2 %, which is no reason to scale.
+// The table has four polar angles of a constant. A sum of trapezoids has 18.2 %, which is no reason to scale.
 TEST(Speos, KeepsCoarseTablesThatAgreeWithTheirReflectance) {
   const auto text = [](const char* modes, const char* type, const char* rows) {
     std::string made = fmt::format(
@@ -86,7 +86,7 @@ TEST(Speos, KeepsCoarseTablesThatAgreeWithTheirReflectance) {
   const SpeosFile file = parse_speos(memory_file(text("1\t0", "1", f)), {});
   EXPECT_THAT(file.findings.conventions, Contains(HasSubstr("taken as they are")));
   EXPECT_NEAR(value(file.table, spherical_direction(0.3, 0), spherical_direction(0.5, 1)), 0.063662, 1e-7);
-  // with transmission behind it the same, which is said
+  // Transmission behind the reflection changes nothing, but the findings name it.
   const std::string both =
       text("1\t1", "1", f) + text("", "", f).substr(text("", "", "").find("\n550\n") + 5);
   const SpeosFile reflection = parse_speos(memory_file(both), {});
@@ -96,7 +96,7 @@ TEST(Speos, KeepsCoarseTablesThatAgreeWithTheirReflectance) {
 }
 
 TEST(Speos, KeepsDarkSpectraAndSpectraThatVaryLittle) {
-  // the seed's blocks integrate to what is found for them; 12 times as much, and 2 % more, at the other wavelength
+  // The stated share at 650 nm is 12 times that at 450 nm, or 2 % more. The values keep this ratio.
   for (const auto& [blue, red] : {std::pair("0.04", "0.48"), std::pair("50", "51")}) {
     std::string text = seeds::kSpeos;
     text.replace(text.find("450\t20"), 6, std::string("450\t") + blue);
@@ -116,14 +116,15 @@ TEST(Speos, KeepsASingleWavelength) {
   brdf.replace(brdf.find(kTwo), kTwo.size(), "2\t1\n0\t60\n905");
   for (const bool spectral : {false, true})
     for (const std::string& text : {anisotropic, brdf}) {
-      // a .brdf's two further blocks follow what is read
+      // Two further blocks of a .brdf follow the block that is read.
       const SpeosFile file = parse_speos(memory_file(text), {.keep_spectral = spectral});
       EXPECT_EQ(file.table.channels(), 1);
       EXPECT_EQ(file.findings.lambda_nm, std::vector<double>{905});
     }
 }
 
-// One incidence, one wavelength, two thetas and two phis of a part; thetas of transmission count from 90 to 180.
+// Each part has one incidence, one wavelength, two thetas and two phis. Thetas of transmission count from 90 to
+// 180.
 TEST(Speos, ReadsTransmissionOfABrdfMirroredThroughTheSurface) {
   const std::string text =
       "OPTIS - brdf surface file v8.0\n0\ncomment\n2\n-\n1\t1\n1\n1\t1\n30\n550\n"
@@ -135,7 +136,7 @@ TEST(Speos, ReadsTransmissionOfABrdfMirroredThroughTheSurface) {
   const SpeosFile through = parse_speos(memory_file(text), {.part = BsdfPart::transmission_front});
   EXPECT_EQ(through.findings.left_out, std::vector<std::string>{"reflection"});
   EXPECT_TRUE(through.findings.transmits());
-  // straight on, at theta 150 and phi 0, is three times as bright as at phi 180
+  // Straight on, at theta 150 and phi 0, the value is three times as bright as at phi 180.
   const Vec3 wi = spherical_direction(radians(30), kPi);
   const double straight = value(through.table, wi, mirror(wi)), aside = value(through.table, wi, wi);
   EXPECT_GT(aside, 0);
@@ -144,7 +145,7 @@ TEST(Speos, ReadsTransmissionOfABrdfMirroredThroughTheSurface) {
               HasSubstr("expected part reflection-back, found reflection-front, transmission-front"));
 }
 
-// Angles of both parts, spectra of both, then blocks of both.
+// Angles of both parts come first, then spectra of both, then blocks of both.
 TEST(Speos, ReadsBothPartsOfAnAnisotropicFile) {
   const std::string text =
       "OPTIS - Anisotropic BSDF surface file v8.0\n0\ncomment\n2\n-\n0\t1\t0\n1\t1\n1\n"
@@ -180,7 +181,8 @@ TEST(Speos, SaysWhatIsWrong) {
               HasSubstr("reflectances that values below 1e+30 have"));
 }
 
-// Blocks begin with a line of two counts; values contain the cosine; phi = 0 is the mirror direction.
+// In this file, blocks begin with a line of two counts, values contain the cosine, and phi = 0 is the mirror
+// direction.
 TEST(Speos, ReadsASurfaceAsAFewLinesDo) {
   BURNISH_NEEDS_DATA();
   const FileBytes bytes = read_file(data_folder() / "speos" / "aniso_bsdf.anisotropicbsdf");

@@ -20,7 +20,7 @@ std::vector<Tensor> example() {
           {"none", TensorType::f64, {0, 7}, {}}};
 }
 
-// Places of the first field, "text", in the header.
+// Offsets in the header of the parts of the first field, "text".
 constexpr std::size_t kFirstField = 18, kDimensions = kFirstField + 2 + 4, kType = kDimensions + 2,
                       kOffset = kType + 1, kShape = kOffset + 8, kSecondField = kShape + 8;
 
@@ -58,7 +58,7 @@ TEST(TensorFile, EveryTruncatedFileThrows) {
   EXPECT_EQ(parse_error(bytes), "");
 }
 
-// Mitsuba refuses a file whose two version bytes are both others.
+// Mitsuba refuses a file only if both version bytes differ from its own.
 TEST(TensorFile, TakesAnyMinorVersion) {
   const std::string bytes = format_tensor_file(example());
   for (const std::size_t at : {12u, 13u})

@@ -30,7 +30,7 @@ TEST(TensorTreeXml, ReadsBracesAndWritesThemBack) {
   EXPECT_EQ(file.table.values.size(), 8u + 3 + 8 + 3);
   EXPECT_EQ(file.findings.negative_count, 1u);
   EXPECT_EQ(file.findings.sample_count,
-            8u + 1 + 8 + 1);  // without the half of axis 0 that stands for nothing
+            8u + 1 + 8 + 1);  // the half of axis 0 that stands for nothing is not counted
   const TensorTreeFile again = parse_tensor_tree(memory_file(format_tensor_tree(file.table, "a<b&c")), {});
   EXPECT_EQ(again.table.values, file.table.values);
   EXPECT_EQ(again.table.links, file.table.links);
@@ -97,7 +97,7 @@ TEST(TensorTreeXml, ReadsAndWritesEachPartAndBand) {
   }
 }
 
-// X, Y and Z of trees that do not branch alike are one function of three channels.
+// Trees of X, Y and Z that do not branch alike are one function of three channels.
 TEST(TensorTreeXml, ReadsColourAsAFunctionOfThreeChannels) {
   const auto block_of = [](std::string_view band, std::string_view braces) {
     return "<WavelengthData><Wavelength>" + std::string(band) +
@@ -123,7 +123,7 @@ TEST(TensorTreeXml, ReadsColourAsAFunctionOfThreeChannels) {
   EXPECT_LT(f[1], 0.3);
 }
 
-// SDqueryTre and SDlookupTre on the text itself.
+// Radiance's SDqueryTre and SDlookupTre, which work on the text itself.
 struct Radiance {
   std::string_view text;
   std::size_t at = 0;
@@ -138,7 +138,7 @@ struct Radiance {
     } while (depth > 0);
     blanks();
   }
-  /// Coordinates in [0, 1), one for each axis.
+  /// Returns the value at coordinates in [0, 1), one for each axis.
   double look_up(std::vector<double> x) {
     blanks();
     ++at;
@@ -170,7 +170,8 @@ std::string_view braces_of(std::string_view text) {
   return text.substr(start, text.find("</Scatt", start) - start);
 }
 
-// At rank 4 the light's direction as it travels, then the viewer's. Rows of 16 cells are .06 wide.
+// The axes of rank 4 are the direction that the light travels to, then the viewer's. Rows of 16 cells are .06
+// wide.
 TEST(TensorTreeXml, WritesARankFourThatRadianceEvaluatesToItsSource) {
   const Source source = open_source("ggx:alpha_x=0.3,alpha_y=0.8,f0=0.4,kd=0.2", {});
   const std::string bytes = convert(source, "tensortree", {.cells = 16}).bytes;
@@ -190,7 +191,7 @@ TEST(TensorTreeXml, WritesARankFourThatRadianceEvaluatesToItsSource) {
     source.ref().eval(wi, wo, expected);
     off += std::abs(found / expected[0] - 1) / kPairs;
   }
-  EXPECT_LT(off, 0.1);  // other orders or signs of the axes: .47 and more
+  EXPECT_LT(off, 0.1);  // other orders or signs of the axes give .47 and more
 }
 
 TEST(TensorTreeXml, EvaluatesAFabricAsRadianceDoes) {
@@ -215,7 +216,7 @@ TEST(TensorTreeXml, EvaluatesAFabricAsRadianceDoes) {
   EXPECT_EQ(again.values, file.table.values);
 }
 
-// Values that Radiance 6.0a gives, by bsdf.query of pyradiance 1.3.1; its front, z > 0, is the file's back.
+// Radiance 6.0a gives these values, by bsdf.query of pyradiance 1.3.1. Its front, z > 0, is the file's back.
 TEST(TensorTreeXml, TransmitsAsRadianceDoes) {
   BURNISH_NEEDS_DATA();
   const FileBytes bytes = read_file(data_folder() / "tensortree" / "t3.xml");

@@ -30,7 +30,7 @@ std::string bytes_of(const std::vector<double>& stored) {
   return {reinterpret_cast<const char*>(stored.data()), stored.size() * sizeof(double)};
 }
 
-// The lines of dj_brdf.h at a node: its index, its scale and its curve.
+// Returns the value at a node by the lines of dj_brdf.h: its index, its scale and its curve.
 double dj_brdf(const std::vector<double>& stored, std::size_t plane, std::size_t iti, std::size_t ipi,
                std::size_t itv, std::size_t ipv) {
   const std::size_t nc = 48 * 6, nr = 48 * 6;
@@ -49,7 +49,7 @@ TEST(Utia, HasTheValuesThatDjBrdfHas) {
   for (std::size_t entry = 0; entry < kPlane; entry += 101) {
     const std::size_t ipv = entry % 48, itv = entry / 48 % 6, ipi = entry / 288 % 48, iti = entry / 288 / 48;
     const auto direction = [](std::size_t theta, std::size_t phi) {
-      // off the normal, where every azimuth is one
+      // The directions lie off the normal, where every azimuth is the same.
       return spherical_direction(std::max(radians(15.0 * static_cast<double>(theta)), 1e-9),
                                  radians(7.5 * static_cast<double>(phi)));
     };
@@ -69,7 +69,7 @@ TEST(Utia, IsConstantFromTheLastAngleToTheHorizon) {
 
 TEST(Utia, IsWrittenAsItWasRead) {
   std::vector<double> stored = random_numbers();
-  stored[0] = 5.25;  // both sides of the curve's knee
+  stored[0] = 5.25;  // values on both sides of the curve's knee
   stored[1] = std::nextafter(5.25, 6);
   stored[2] = 5.25 * (1 + 1e-9);
   const AngleTable read = parse_utia(memory_file(bytes_of(stored))).table;
@@ -119,7 +119,7 @@ TEST(Utia, IsKnownByItsLengthAndNumbers) {
   EXPECT_THAT(error_of([&] { parse_source(memory_file(whole), {}); }),
               HasSubstr("offset 800: expected a finite"));
   EXPECT_THAT(error_of([&] { parse_utia(memory_file("short")); }), HasSubstr("1990656 bytes"));
-  // the seed of its fuzzer
+  // The fuzzer's seed is read too.
   std::string seed;
   while (seed.size() < whole.size()) seed += seeds::kUtia;
   EXPECT_NO_THROW(parse_utia(memory_file(seed)));

@@ -35,7 +35,7 @@ std::string zemax_error(const std::string& text) {
   return error_of([&] { parse_zemax(memory_file(text)); });
 }
 
-// f_r = 0.1 / pi to 90 degrees and beyond; TIS says more.
+// Returns a table of f_r = 0.1 / pi to 90 degrees and beyond; its TIS states more.
 std::string lambertian(std::string_view tis) {
   std::string text =
       "# Sample: white\n#  kept,\tas it is "
@@ -82,18 +82,18 @@ TEST(Zemax, ReadsValuesAroundTheMirrorDirection) {
   EXPECT_TRUE(file.table.isotropic());
   double f;
   const double phi = 0.3;
-  for (const int side : {-1, 1}) {  // folded
+  for (const int side : {-1, 1}) {  // the table is folded
     const Vec3 wi = spherical_direction(radians(10), phi);
     ASSERT_TRUE(file.table.eval(wi, around_specular(radians(10), phi, 0, radians(10)), {&f, 1}));
     EXPECT_NEAR(f, 2, 1e-6);
     ASSERT_TRUE(file.table.eval(wi, around_specular(radians(10), phi, side * kHalfPi, radians(10)), {&f, 1}));
     EXPECT_NEAR(f, 3, 1e-6);
   }
-  // The hole at 30 degrees takes no part: the mirror direction's value is left.
+  // The hole at 30 degrees takes no part, so the mirror direction's value is left.
   ASSERT_TRUE(file.table.eval(spherical_direction(radians(30), 0),
                               around_specular(radians(30), 0, kPi, radians(5)), {&f, 1}));
   EXPECT_NEAR(f, 5, 1e-6);
-  // Half a step beyond the incidences is covered, more is not.
+  // Directions up to half a step beyond the incidences are covered.
   EXPECT_TRUE(
       file.table.eval(spherical_direction(radians(39), 0), spherical_direction(radians(39), kPi), {&f, 1}));
   EXPECT_FALSE(
@@ -126,7 +126,7 @@ TEST(Zemax, TurnsWhiteXyzIntoGreyRgb) {
   for (const double value : f) EXPECT_NEAR(value, 1, 1e-4);
 }
 
-// Rotations, incidences and azimuths of a coarse file.
+// Returns the rotations, incidences and azimuths of a coarse file.
 AngleTable coarse_layout(bool isotropic) {
   AngleTable layout;
   layout.frame = AngleTable::Frame::specular;
@@ -171,7 +171,7 @@ TEST(Zemax, WritesZeroSaturationAndTotals) {
   AngleTable table = tabulate_angles(fixtures::Lambert{}, zemax_layout(true));
   const std::string white = format_zemax(table, "");
   const std::string tis = white.substr(white.find("TIS\t") + 4, 8);
-  // X of the albedos 0.8, 0.5, 0.2
+  // TIS is X of the albedos 0.8, 0.5 and 0.2.
   EXPECT_NEAR(std::stod(tis), 0.4124564 * 0.8 + 0.3575761 * 0.5 + 0.1804375 * 0.2, 0.01);
   for (std::size_t i = 0; i < table.values.size(); i += 3) {
     if (std::isnan(table.values[i])) continue;
