@@ -7,7 +7,7 @@
 
 namespace burnish {
 
-/// Integral over the upper hemisphere, by Gauss-Legendre in theta = (pi/2) v² and equal steps in azimuth.
+/// Integrates over the upper hemisphere, by Gauss-Legendre in theta = (pi/2) v² and equal steps in azimuth.
 template <int kPolar = 96, int kAzimuths = 256, class Integrand>
 double over_hemisphere(const Integrand& integrand) {
   return integrate<kPolar>(0, 1, [&](double v) {
@@ -18,8 +18,8 @@ double over_hemisphere(const Integrand& integrand) {
   });
 }
 
-/// Share of light reflected towards wo under uniform illumination (first channel), integrated over the half
-/// vector, where narrow lobes are smooth.
+/// Returns the share of light reflected towards wo under uniform illumination (first channel). The integral
+/// runs over the half vector, where narrow lobes are smooth.
 template <int kPolar = 96, int kAzimuths = 256, Brdf T>
 double albedo(const T& brdf, Vec3 wo) {
   std::array<double, 3> f;

@@ -10,7 +10,7 @@
 
 namespace burnish::fixtures {
 
-/// Values in [low, 1), rounded to half floats.
+/// Returns a table of values in [low, 1), rounded to half floats.
 inline NodeTable random_table(std::vector<NodeAxis> axes, std::size_t channels, int terms, double low,
                               std::uint64_t seed) {
   NodeTable table{std::move(axes), channels, terms, {}};

@@ -13,7 +13,7 @@
 
 namespace burnish {
 
-/// A book of numbers at random: two materials, two components of brightness, one and none of colour.
+/// Returns a book of random numbers: two materials, two components of brightness, one and none of colour.
 inline MaterialBook random_book(std::uint64_t seed = 1) {
   constexpr std::size_t kNodes = 4 * 3 * 2;
   Pcg32 random(seed);
@@ -21,7 +21,7 @@ inline MaterialBook random_book(std::uint64_t seed = 1) {
   std::array<BookAxis, MaterialBook::kAxes> axes;
   const std::array<std::size_t, MaterialBook::kAxes> counts = {2, 1, 0};
   for (std::size_t u = 0; u < axes.size(); ++u) {
-    // eighths: halves hold them exactly
+    // Means are multiples of an eighth, which halves hold exactly.
     for (std::size_t n = 0; n < kNodes; ++n)
       axes[u].mean.push_back(std::round(static_cast<float>(8 * random.uniform())) / 8 - (u == 0 ? 4 : 0.5f));
     axes[u].residual = 0.25f;
@@ -38,7 +38,7 @@ inline MaterialBook random_book(std::uint64_t seed = 1) {
   return {{4, 3, 2}, std::move(axes), std::move(materials)};
 }
 
-/// An analytic BRDF as open_source gives it.
+/// Returns an analytic BRDF as open_source opens it.
 inline Source analytic_source(const std::string& spec) {
   return {.name = spec, .brdf = parse_analytic(spec), .findings = {}};
 }

@@ -23,8 +23,8 @@ struct Lambert {
   }
 };
 
-/// Lambert plus a lobe exp(-a hx^2 - b hy^2), scaled; stretched along the tangent where a != b; knows nothing
-/// where cos theta_d is below `blind_below`.
+/// Lambert plus a lobe exp(-a hx^2 - b hy^2), scaled. The lobe is stretched along the tangent if a != b.
+/// Nothing is known where cos theta_d is below `blind_below`.
 struct Glossy {
   double a = 40, b = 40, scale = 1, blind_below = -1;
   std::size_t count = 3;
@@ -42,7 +42,8 @@ struct Glossy {
   }
 };
 
-/// Glossy times a factor of the directions in each channel, Factor::of(slope, channel, wi, wo) > 0: isotropic.
+/// Glossy times a factor of the directions in each channel, Factor::of(slope, channel, wi, wo) > 0. It is
+/// isotropic.
 template <class Factor>
 struct GlossyTimes {
   Glossy even;
@@ -57,7 +58,8 @@ struct GlossyTimes {
   }
 };
 
-/// 1 + slope cos theta_i in the first channel, 1 - slope cos theta_i / 2 in the others: not reciprocal.
+/// 1 + slope cos theta_i in the first channel, 1 - slope cos theta_i / 2 in the other channels. It is not
+/// reciprocal.
 struct OrderFactor {
   static constexpr double kSlope = 0.5;
   static double of(double slope, std::size_t c, Vec3 wi, Vec3) noexcept {
@@ -66,7 +68,8 @@ struct OrderFactor {
 };
 using Ordered = GlossyTimes<OrderFactor>;
 
-/// Brighter on one side of the plane of h and n than on the other: reciprocal, but not its own mirror image.
+/// Brighter on one side of the plane of h and n than on the other. It is reciprocal, but not its own mirror
+/// image.
 struct TwistFactor {
   static constexpr double kSlope = 1.5;
   static double of(double slope, std::size_t, Vec3 wi, Vec3 wo) noexcept {

@@ -12,7 +12,7 @@
 
 namespace burnish {
 
-/// What a BTF of signature !DFMF08FCR holds.
+/// The content of a BTF file of signature !DFMF08FCR.
 struct BtfContent {
   std::uint32_t width = 5, height = 2, version = 4;
   float pixels_per_mm = 10;
@@ -29,7 +29,7 @@ struct BtfContent {
 
   std::size_t picture_count() const { return lights.size() * views.size(); }
 
-  /// The sum over the components of a channel.
+  /// Returns the sum over the components of a channel.
   double product(std::size_t channel, std::size_t picture, std::size_t texel) const {
     double sum = 0;
     const std::size_t count = components[channel];
@@ -39,7 +39,7 @@ struct BtfContent {
   }
 };
 
-/// Numbers of 2^-5 that every scalar holds.
+/// Returns content whose numbers are multiples of 2^-5, which every scalar type holds.
 inline BtfContent btf_content() {
   BtfContent content;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -51,7 +51,7 @@ inline BtfContent btf_content() {
   return content;
 }
 
-/// The file of it.
+/// Returns the file of this content.
 inline std::string btf_bytes(const BtfContent& content) {
   std::string file = "!DFMF08FCR";
   const auto put = [&file](auto value) { file.append(reinterpret_cast<const char*>(&value), sizeof(value)); };

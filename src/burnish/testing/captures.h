@@ -10,7 +10,7 @@
 
 namespace burnish {
 
-/// A scene of two analytic materials in patches, with bumps; `more` are members beside these.
+/// Returns a scene of two analytic materials in patches, with bumps; `more` adds members to its JSON.
 inline SurfaceScene small_scene(int side, int lights, const std::string& more = "") {
   const std::string text =
       R"({"version":1,"width":)" + std::to_string(side) + R"(,"height":)" + std::to_string(side) +
@@ -23,7 +23,7 @@ inline SurfaceScene small_scene(int side, int lights, const std::string& more = 
   return parse_surface_scene(memory_file(text), ".");
 }
 
-/// The same as a capture in a folder.
+/// Writes small_scene as a capture into a folder.
 inline CaptureForm small_capture(const std::filesystem::path& folder, int side, int lights,
                                  const std::string& more = "") {
   return write_virtual_capture(small_scene(side, lights, more), folder);

@@ -11,7 +11,7 @@ namespace burnish {
 
 inline constexpr int kCheckpointWidth = 3, kCheckpointRows = 2;
 
-/// Numbers that are all different; codes of two lobes, with or without normals.
+/// Returns a checkpoint whose numbers are all different, with codes of two lobes, with or without normals.
 inline FitCheckpoint some_checkpoint(bool normals) {
   FitCheckpoint checkpoint{
       .key = 0xfedcba9876543210,

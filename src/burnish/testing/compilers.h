@@ -13,7 +13,7 @@
 
 namespace burnish {
 
-/// Runs a shell command; what it says becomes `log` and, if it fails, the message.
+/// Runs a shell command. Its output is written to `log` and, if the command fails, becomes the message.
 inline ::testing::AssertionResult runs(const std::string& command, const std::filesystem::path& log) {
   if (std::system(fmt::format("({}) > {} 2>&1", command, log.string()).c_str()) == 0)
     return ::testing::AssertionSuccess();
@@ -22,7 +22,7 @@ inline ::testing::AssertionResult runs(const std::string& command, const std::fi
   return ::testing::AssertionFailure() << command << ":\n" << said.str();
 }
 
-/// A number that counts what is done with it, in place of float in the generated C++.
+/// A number type that counts its operations, in place of float in the generated C++.
 inline constexpr const char* kCounting = R"(
 #include <math.h>
 #include <stdio.h>
@@ -51,7 +51,8 @@ static Counted cosf(Counted a) { return ++powers, cos(a.v); }
 #define float Counted
 )";
 
-/// A compiler of a language, what makes a program of a shader called {0}, and how it is run.
+/// A compiler of a language, the text that makes a program of a shader called {0}, and the command that runs
+/// it.
 struct Checked {
   ShaderLanguage language;
   const char *tool, *extension, *before, *main, *command;
@@ -69,7 +70,7 @@ inline const Checked kChecked[] = {
      "float4 main(float4 at : SV_Position) : SV_Target {{ return float4(burnish_{0}(at.xyz, at.xyz) + "
      "burnish_{0}_world(at.xyz, at.xyz, at.xyz, at.xyz), 1.0); }}\n",
      "for f in{}; do glslangValidator -D -e main -S frag -V -o /dev/null $f || exit 1; done"},
-    // The HLSL of glslang has all of what generated Slang uses; tests/shaders/compile.py has Slang's own compiler.
+    // The HLSL of glslang has all that generated Slang uses; tests/shaders/compile.py has Slang's own compiler.
     {ShaderLanguage::slang, "glslangValidator", "frag.hlsl", "",
      "float4 main(float4 at : SV_Position) : SV_Target {{ return float4(burnish_{0}(at.xyz, at.xyz) + "
      "burnish_{0}_world(at.xyz, at.xyz, at.xyz, at.xyz), 1.0); }}\n",

@@ -47,7 +47,7 @@ class ThreadCrew {
   std::vector<std::string> sent_;
 };
 
-/// What work(rank's crew) returns at each rank, all at once.
+/// Returns the results of work(rank's crew) at each rank; all ranks run at once.
 template <class Work>
 auto at_every_rank(int ranks, Work work) {
   ThreadCrew crew(ranks);

@@ -7,13 +7,13 @@
 
 namespace burnish {
 
-/// Evenly over the sphere.
+/// Draws a direction evenly over the sphere.
 inline Vec3 random_direction(Pcg32& random) {
   const double z = 1 - 2 * random.uniform();
   return spherical_direction(std::acos(z), kTwoPi * random.uniform());
 }
 
-/// Evenly over the upper hemisphere, z in (0, 1].
+/// Draws a direction evenly over the upper hemisphere, z in (0, 1].
 inline Vec3 random_upper_direction(Pcg32& random) {
   const double z = 1 - random.uniform();
   return spherical_direction(std::acos(z), kTwoPi * random.uniform());

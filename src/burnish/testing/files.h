@@ -9,7 +9,7 @@
 
 namespace burnish {
 
-/// The folder of real measurements, empty where the environment names none.
+/// Returns the folder of real measurements, empty if BURNISH_DATA names none.
 inline std::filesystem::path data_folder() {
   const char* folder = std::getenv("BURNISH_DATA");
   return folder ? folder : "";
@@ -17,6 +17,6 @@ inline std::filesystem::path data_folder() {
 
 }  // namespace burnish
 
-/// Skips the test where there are no real measurements.
+/// Skips the test if there are no real measurements.
 #define BURNISH_NEEDS_DATA() \
   if (burnish::data_folder().empty()) GTEST_SKIP() << "BURNISH_DATA is not set"

@@ -8,7 +8,7 @@
 
 namespace burnish::fixtures {
 
-/// A surface that is not known in places.
+/// A surface that is unknown at some directions.
 struct Gaps {
   BrdfRef whole;
   std::function<bool(Vec3 wi, Vec3 wo)> unknown;

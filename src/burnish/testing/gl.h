@@ -10,7 +10,7 @@
 
 namespace burnish {
 
-/// A context for tests, or why there is none.
+/// A context for tests, or the reason for its absence.
 struct TestContext {
   std::unique_ptr<GlContext> context;
   std::string reason;
@@ -24,7 +24,8 @@ struct TestContext {
   }
 };
 
-/// The largest of a table's ratios of texels that are neighbours along an axis, less 1, summed over its axes.
+/// Returns a table's steepness: the largest ratio of neighbouring texels along an axis, less 1, summed over
+/// its axes.
 inline double steepness(const Table& table) {
   const std::size_t sizes[] = {static_cast<std::size_t>(table.layout.width),
                                static_cast<std::size_t>(table.layout.height),
@@ -34,7 +35,7 @@ inline double steepness(const Table& table) {
   for (const std::size_t size : sizes) {
     double ratio = 1;
     for (std::size_t i = 0; i + step < table.values.size(); ++i) {
-      if (i / step % size + 1 == size) continue;  // the last along this axis
+      if (i / step % size + 1 == size) continue;  // the last texel along this axis
       const auto [least, most] = std::minmax(table.values[i], table.values[i + step]);
       ratio = std::max(ratio, static_cast<double>(most) / least);
     }
@@ -44,8 +45,8 @@ inline double steepness(const Table& table) {
   return sum;
 }
 
-/// What filtered reads are off by, relative to f, where a texture unit has 8 bits for how near a texel is: 2^-9 of the
-/// steepness of each table that a lobe reads. Mesa's renderers have more bits.
+/// Returns the error of filtered reads relative to f, if a texture unit has 8 bits for a position between two texels.
+/// The error is 2^-9 of the steepness of each table that a lobe reads. Mesa's renderers have more bits.
 inline double filter_error(const GlContext& context, const FactoredBrdf& brdf) {
   if (context.in_software()) return 0;
   double worst = 0;

@@ -14,17 +14,17 @@
 
 namespace burnish {
 
-/// What a graph of numbers and vectors computes, in double.
+/// Inputs of a graph of numbers and vectors, whose values graph_values computes in double.
 struct GraphInputs {
-  std::map<std::string, std::array<double, 3>> values;  ///< of numbers the first
+  std::map<std::string, std::array<double, 3>> values;  ///< a number takes the first component
   std::function<double(const std::string&, int)> element = {};
-  /// Of a texture at coordinates.
+  /// Value of a texture at coordinates.
   std::function<std::array<double, 3>(const std::string&, std::span<const double>)> sample = {};
-  /// What every result that depends on a sample is rounded by.
+  /// Rounds every result that depends on a sample.
   std::function<double(double)> round = [](double x) { return x; };
 };
 
-/// An operation on the numbers a(0), a(1) and so on.
+/// Returns the value of an operation on the numbers a(0), a(1) and so on.
 template <class Arguments>
 double operation_value(Op op, const Arguments& a) {
   switch (op) {
@@ -73,7 +73,7 @@ double operation_value(Op op, const Arguments& a) {
 
 using GraphValues = std::vector<std::array<double, 3>>;
 
-/// Component i of a node, of the values of those before it.
+/// Returns component i of a node, from the values of the nodes before it.
 inline double component_value(const Graph& graph, const Graph::Node& node, std::size_t i,
                               const GraphValues& before, const GraphInputs& inputs) {
   const auto argument = [&](std::size_t k, std::size_t component) {

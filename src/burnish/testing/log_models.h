@@ -1,6 +1,6 @@
 #pragma once
 
-// What tests of refinement share: small sets, random models and their values.
+// Helpers of the tests of refinement: small sets, random models and their values.
 
 #include <cstddef>
 #include <span>
@@ -19,7 +19,7 @@ inline TrainingSet small_set(const AnalyticBrdf& brdf, std::size_t count = 3000)
   return draw_training_set(brdf.ref(), {.pictures = count, .directions = count});
 }
 
-/// Random logarithms in [-1, 0].
+/// Returns a model of random logarithms in [-1, 0].
 inline LogModel random_model(const std::string& expression, const std::vector<std::string>& tables,
                              std::size_t channels) {
   LogModel model{.spec = parse_model_spec(expression, tables, true), .channels = channels, .log_values = {}};
@@ -31,7 +31,7 @@ inline LogModel random_model(const std::string& expression, const std::vector<st
   return model;
 }
 
-/// The model's values at the set's pairs.
+/// Returns the model's values at the set's pairs.
 inline std::vector<double> evaluate(const LogModel& model, const TrainingSet& set) {
   const FactoredBrdf brdf = to_brdf(model, TableFormat::single);
   std::vector<double> f(set.size() * model.channels);

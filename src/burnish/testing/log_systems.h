@@ -1,6 +1,7 @@
 #pragma once
 
-// What tests of the solvers of one lobe share: log-linear problems, and how far a solution is from the least.
+// Helpers of the tests of one-lobe solvers: log-linear problems, and the distance of a solution from the
+// minimum.
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +18,7 @@
 
 namespace burnish::fixtures {
 
-/// Values and weights at random, some samples without weight.
+/// Returns random values and weights; some samples have no weight.
 inline SampleSource random_log_source(std::size_t count, std::size_t channels) {
   SampleSource source{.count = count, .distinct = count, .channels = channels, .isotropic = true, .fill = {}};
   source.fill = [all = draw_pairs(count, 3, false), channels](
@@ -34,8 +35,8 @@ inline SampleSource random_log_source(std::size_t count, std::size_t channels) {
   return source;
 }
 
-/// Of the objective that HomomorphicOptions::smooth states: its slopes by the unknowns, at x and at 0, and the weighted
-/// rms of the rows' errors at x. Rows of one weight for all channels.
+/// The objective that HomomorphicOptions::smooth states: its slopes by the unknowns, at x and at 0, and the weighted
+/// rms of the rows' errors at x. Each row has one weight for all channels.
 struct LogObjective {
   std::vector<double> slope, slope_at_zero;
   double rms = 0;
@@ -51,7 +52,7 @@ inline LogObjective log_objective(const RowMaker& maker, const LogSolution& solu
   const std::vector<FactorUse>& uses = spec.lobes.front();
   for (std::size_t i = 0; i < rows.size; ++i)
     for (std::size_t c = 0; c < channels; ++c) {
-      // lines and disks: one or four nodes a lookup, some of weight 0
+      // A lookup has two nodes in a line and four in a disk, some of weight 0.
       std::vector<std::pair<std::size_t, double>> row;
       for (std::size_t k = 0; k < uses.size(); ++k) {
         const TableLayout& layout = spec.tables[uses[k].table].layout;
@@ -104,12 +105,14 @@ inline const LogCase kLogCases[] = {{"p(wo) q(h) p(wi)", {"p=6", "q=9"}, 1},
                                     {"p(wo) q(h) p(wi)", {"p=6,shared", "q=9"}, 3},
                                     {"p(wo) q(h) p(wi) r(theta_d)", {"p=5x5", "q=9", "r=4,shared"}, 5}};
 
-/// How far from the least of the objective a solver may end: share of the slope at 0, and of the rms.
+/// Distance from the minimum at which a solver may end: its slope as a share of the slope at 0, and a share
+/// of the rms.
 struct LogTolerance {
   double slope, rms;
 };
 
-/// solve(rows) ends where the objective of every case of kLogCases is least, and says so.
+/// Expects that solve(rows) ends at the minimum of the objective in every case of kLogCases, and gives
+/// `reason`.
 template <class Solve>
 void expect_least(std::size_t samples, const Solve& solve, double smooth, LogTolerance tolerance,
                   StopReason reason) {

@@ -11,7 +11,7 @@
 
 namespace burnish::fixtures {
 
-/// A matrix of the given rank with entries u v, u and v uniform in [low, 1).
+/// Returns a matrix of the given rank with entries u v, u and v uniform in [low, 1).
 inline Matrix random_matrix(std::size_t rows, std::size_t columns, std::size_t rank, double low,
                             std::uint64_t seed) {
   Pcg32 random(seed);

@@ -22,7 +22,7 @@ struct ModelCase {
   std::size_t channels;
 };
 
-/// Every kind of table, warp and projection, alone and together.
+/// Models with every kind of table, warp and projection, alone and together.
 inline const ModelCase kModelCases[] = {
     {"Pqp", "pqp", {"p=32", "q=64"}, 3},
     {"DiskPqp", "pqp", {"p=32x32", "q=64x64,rational:0.2"}, 3},
@@ -62,14 +62,15 @@ inline const ModelCase kModelCases[] = {
      3},
 };
 
-/// The case of that name.
+/// Returns the case of that name.
 inline const ModelCase& model_case(std::string_view name) {
   const ModelCase* const found = std::ranges::find(kModelCases, name, &ModelCase::name);
   if (found == std::end(kModelCases)) throw Error("no model case " + std::string(name));
   return *found;
 }
 
-/// Gives both ends of what is looked up by phi_s one value: they are one place, and rounding decides between them.
+/// Gives one value to both ends of tables that are looked up by phi_s. The two ends are one place, and rounding
+/// decides between them.
 inline void close_circles(std::vector<Table>& tables, const std::vector<Lobe>& lobes) {
   for (const Lobe& lobe : lobes)
     for (const FactorUse& use : lobe.factors) {
@@ -90,7 +91,8 @@ inline void close_circles(std::vector<Table>& tables, const std::vector<Lobe>& l
     }
 }
 
-/// A model of the case's form: log_value(table, layout, x, row, channel) fills its tables, `random` its lobes' scales.
+/// Returns a model of the case's form. log_value(table, layout, x, row, channel) fills its tables, and `random` draws
+/// the scales of its lobes.
 template <class LogValue>
 FactoredBrdf model_of(const ModelCase& model, TableFormat format, Pcg32& random, LogValue log_value) {
   const ModelSpec spec = parse_model_spec(model.expression, model.options, true);
@@ -115,10 +117,11 @@ FactoredBrdf model_of(const ModelCase& model, TableFormat format, Pcg32& random,
   return from_log_tables(model.channels, std::move(tables), std::move(lobes), format);
 }
 
-/// Smooth tables, as fits have them: neighbours differ by 12 % at most from sides of 32 up.
+/// Returns a model with smooth tables, as fits have them: neighbours differ by 12 % at most for sides of 32
+/// or more.
 inline FactoredBrdf smooth_model(const ModelCase& model, TableFormat format = TableFormat::single) {
   Pcg32 random(7);
-  std::vector<double> phases;  // one a table
+  std::vector<double> phases;  // one phase for each table
   return model_of(model, format, random,
                   [&](std::size_t table, const TableLayout& layout, int x, int y, int c) {
                     if (table == phases.size()) phases.push_back(6 * random.uniform());
@@ -127,7 +130,7 @@ inline FactoredBrdf smooth_model(const ModelCase& model, TableFormat format = Ta
                   });
 }
 
-/// A model with random tables: log values uniform in [-span, 0].
+/// Returns a model with random tables: log values uniform in [-span, 0].
 inline FactoredBrdf random_model(const char* expression, std::vector<std::string> options,
                                  std::size_t channels, TableFormat format, double span = 3) {
   Pcg32 random(17);
@@ -146,14 +149,15 @@ inline FactoredBrdf random_model(const char* expression, std::vector<std::string
   return from_log_tables(channels, std::move(tables), std::move(lobes));
 }
 
-/// Every kind of table, warp and projection in one model, and sizes for its tables.
+/// An expression with every kind of table, warp and projection, and sizes for its tables.
 inline const char* const kEverything =
     "p(wo) q(h) p(wi) r(theta_d) + s(wi+wo+0.4n) t(wi) t(wo) u(theta_h,theta_d) + v(0.3wi+0.9wo) "
     "v(0.9wi+0.3wo) + x(theta_h,theta_d,phi_d)";
 inline const std::vector<std::string> kEverySize{
     "p=8", "q=16x16,rational:0.2", "r=5,power:0.5,shared", "s=9x9", "t=4,shared", "u=6x7", "v=11", "x=7x5x3"};
 
-/// All pairs of the corners: normal, grazing, borders of maps, wi == wo, where phi wraps, below the horizon.
+/// Returns all pairs of the corners: normal, grazing, borders of maps, wi == wo, the wrap of phi, below the
+/// horizon.
 inline std::vector<DirectionPair> corner_pairs() {
   const Vec3 corners[] = {{0, 0, 1},         {1, 0, 1e-5}, {-1, 0, 1e-5},    {0, -1, 1e-3},   {1e-6, 0, 1},
                           {-1e-6, 1e-6, 1},  {1, 1, 1},    {1, 1, 0.999},    {-1, -1e-9, .5}, {-1, 1e-9, .5},
@@ -164,7 +168,7 @@ inline std::vector<DirectionPair> corner_pairs() {
   return pairs;
 }
 
-/// The pairs with the components that floats hold.
+/// Returns the pairs with components rounded to floats.
 inline std::vector<DirectionPair> as_floats(std::vector<DirectionPair> pairs) {
   for (auto& [wi, wo] : pairs)
     for (Vec3* w : {&wi, &wo})
@@ -172,7 +176,7 @@ inline std::vector<DirectionPair> as_floats(std::vector<DirectionPair> pairs) {
   return pairs;
 }
 
-/// The corners and random pairs, a tenth of them wi == wo, `count` together, as floats hold them.
+/// Returns `count` pairs rounded to floats: the corners and random pairs, a tenth of them wi == wo.
 inline std::vector<DirectionPair> corner_and_random_pairs(int count) {
   std::vector<DirectionPair> pairs = corner_pairs();
   Pcg32 random(11);
@@ -188,8 +192,9 @@ inline std::vector<DirectionPair> corner_and_random_pairs(int count) {
   return as_floats(std::move(pairs));
 }
 
-/// How much cancelling terms of projections magnify rounding errors: the largest of (sum of |coefficients|) /
-/// |combination| over the factors.
+/// Returns the factor by which cancelling terms of projections magnify rounding errors. It is the largest of
+/// (sum of
+/// coefficients|) / |combination| over the factors.
 inline double cancellation(const FactoredBrdf& brdf, Vec3 wi, Vec3 wo) {
   double worst = 1;
   for (const Lobe& lobe : brdf.lobes())
@@ -204,8 +209,9 @@ inline double cancellation(const FactoredBrdf& brdf, Vec3 wi, Vec3 wo) {
   return worst;
 }
 
-/// Besides, of shaders: phi_d of directions that are unit to 2^-24 is off by 2^-24 / (sin theta_d sin theta_h)
-/// (folded_azimuth of parameterization/projection-inl.h), so that f is by that times the slope of its tables.
+/// Returns the same factor for shaders, where phi_d adds to it. The phi_d of directions that are unit to 2^-24
+/// is off by 2^-24 / (sin theta_d sin theta_h) (folded_azimuth of parameterization/projection-inl.h). So f is
+/// off by that error times the slope of its tables.
 inline double shader_cancellation(const FactoredBrdf& brdf, Vec3 wi, Vec3 wo) {
   double worst = cancellation(brdf, wi, wo);
   const Vec3 sum = wi + wo;

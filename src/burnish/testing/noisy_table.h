@@ -11,13 +11,13 @@
 
 namespace burnish::fixtures {
 
-/// Of mean 0 and variance 1.
+/// Draws a uniform number of mean 0 and variance 1.
 inline double draw_even(Pcg32& random) {
   return std::sqrt(12) * (random.uniform() - 0.5);
 }
 
-/// A virtual measurement: GGX with noise of 30 % in proportion, from which the light is taken off below which a third
-/// of the values lies.
+/// Returns a virtual measurement: GGX with noise of 30 % in proportion. The value that a third of the values lies
+/// below is then subtracted from all.
 inline AngleTable noisy_table() {
   AngleTable layout;
   layout.folded = true;

@@ -12,8 +12,9 @@
 
 namespace burnish {
 
-/// Weights of a layer of n inputs within sqrt(6 / n) of 0, so that values neither grow nor vanish; biases
-/// within 0.2. The last layer's are not negative and a tenth as large, so that no output is cut off.
+/// Returns random weights of the decoder. Weights of a layer of n inputs lie within sqrt(6 / n) of 0, so that
+/// values neither grow nor vanish; biases lie within 0.2. The last layer's are not negative and a tenth as
+/// large, so that no output is cut off.
 inline std::vector<float> random_np_weights(std::uint64_t seed) {
   Pcg32 random(seed);
   std::vector<float> weights;

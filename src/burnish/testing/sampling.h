@@ -16,8 +16,9 @@ namespace burnish {
 inline const Vec3 kViews[] = {
     {0, 0, 1}, spherical_direction(0.6, 1), spherical_direction(1.2, 4), spherical_direction(1.54, 2)};
 
-/// Probability that a chi-square variable of `degrees` degrees of freedom exceeds x: the regularized upper
-/// incomplete gamma function Q(degrees / 2, x / 2), by its series or its continued fraction.
+/// Returns the probability that a chi-square variable of `degrees` degrees of freedom exceeds x. It is the
+/// regularized upper incomplete gamma function Q(degrees / 2, x / 2), by its series or its continued
+/// fraction.
 inline double chi_square_tail(double x, int degrees) noexcept {
   const double a = 0.5 * degrees, z = 0.5 * x, front = std::exp(a * std::log(z) - z - std::lgamma(a));
   if (z < a + 1) {
@@ -37,28 +38,28 @@ inline double chi_square_tail(double x, int degrees) noexcept {
   return front * fraction;
 }
 
-/// What a histogram of drawn directions says about a sampler's pdf.
+/// The results of a test that compares a histogram of drawn directions with a sampler's pdf.
 struct DrawTest {
-  double p_value;   ///< of the histogram, if directions are drawn by pdf
+  double p_value;   ///< of the histogram, if the pdf is that of the draws
   double integral;  ///< of pdf over the upper hemisphere
 };
 
-/// The bins of half vectors that test_draws counts in, kSide x kSide of them and one below the horizon: even in
-/// the azimuth and in the root of log(1 + 1000 tan^2(theta_h / 2)) up to where the mirror of wo meets the
-/// horizon, so that highlights and tails both have some.
+/// The bins of half vectors that test_draws counts in, kSide x kSide of them and one below the horizon. They
+/// are even in the azimuth and in the root of log(1 + 1000 tan^2(theta_h / 2)). They end where the mirror of
+/// wo meets the horizon. So both highlights and tails have some bins.
 struct HalfVectorBins {
   static constexpr int kSide = 12, kPoints = 600;
   static constexpr double kSpread = 1000;
   Vec3 wo;
 
-  /// log(1 + 1000 tan^2(theta_h / 2)) at the horizon.
+  /// Returns log(1 + 1000 tan^2(theta_h / 2)) at the horizon.
   double largest(double phi) const noexcept {
     return std::log1p(kSpread * largest_visible_half(wo.x * std::cos(phi) + wo.y * std::sin(phi), wo.z));
   }
   std::size_t count() const noexcept { return kSide * kSide + 1; }
 
-  /// The integral of pdf over each bin, by kPoints points of a lattice, which borders of cells that are
-  /// parallel to the bins do not mislead.
+  /// Returns the integral of pdf over each bin, by kPoints points of a lattice. Borders of cells that are
+  /// parallel to the bins do not mislead a lattice.
   std::vector<double> integrals(SamplerRef sampler) const {
     std::vector<double> shares(count());
     for (int bin = 0; bin < kSide * kSide; ++bin)
@@ -68,7 +69,7 @@ struct HalfVectorBins {
         const double place = (bin % kSide + golden - std::floor(golden)) / kSide;
         const double m = std::expm1(v * place * place) / kSpread;
         const Vec3 h = spherical_direction(2 * std::atan(std::sqrt(m)), phi);
-        // dm dphi of a bin; solid angles as in half_vector_quadrature
+        // This is dm dphi of a bin, with solid angles as in half_vector_quadrature.
         const double area = (m + 1 / kSpread) * 2 * v * place * kTwoPi / (kSide * kSide);
         const double solid_angle = 8 * dot(wo, h) * area / ((1 + m) * (1 + m)) / kPoints;
         shares[static_cast<std::size_t>(bin)] += sampler.pdf(2 * dot(wo, h) * h - wo, wo) * solid_angle;
@@ -76,7 +77,7 @@ struct HalfVectorBins {
     return shares;
   }
 
-  /// The bin of a draw.
+  /// Returns the bin of a draw.
   std::size_t of(const DrawnDirection& drawn) const noexcept {
     if (!(drawn.wi.z > 0 && drawn.pdf > 0)) return kSide * kSide;
     const Vec3 h = half_vector(drawn.wi, wo);
@@ -87,8 +88,9 @@ struct HalfVectorBins {
   }
 };
 
-/// Pearson's chi-square test of counts; bins of fewer than five expected are joined, and too small a rest may
-/// hold no more than 25.
+/// Returns the p-value of Pearson's chi-square test of counts. Bins of fewer than five expected counts are
+/// joined. If the joined bins expect fewer than five too, they may hold no more than 25 counts; otherwise the
+/// p-value is 0.
 inline double chi_square_p_value(std::span<const double> expected, std::span<const double> seen) noexcept {
   double statistic = 0, rest_expected = 0, rest_seen = 0;
   int bins = 0;
@@ -110,8 +112,8 @@ inline double chi_square_p_value(std::span<const double> expected, std::span<con
   return bins > 1 ? chi_square_tail(statistic, bins - 1) : 1;
 }
 
-/// Draws `draws` directions for wo and compares how many fall into each of HalfVectorBins with the integral of
-/// pdf over the bin.
+/// Draws `draws` directions for wo. Compares the count in each of HalfVectorBins with the integral of pdf over
+/// the bin.
 inline DrawTest test_draws(SamplerRef sampler, Vec3 wo, int draws, std::uint64_t seed) {
   const HalfVectorBins bins{wo};
   std::vector<double> expected = bins.integrals(sampler);
@@ -128,7 +130,7 @@ inline DrawTest test_draws(SamplerRef sampler, Vec3 wo, int draws, std::uint64_t
   return {chi_square_p_value(expected, seen), total};
 }
 
-/// The level at which each of `count` tests is run so that all pass with probability 1 - `level` (Sidak).
+/// Returns the level of each of `count` tests at which all pass with probability 1 - `level` (Sidak).
 inline double level_of_each(double level, int count) noexcept {
   return -std::expm1(std::log1p(-level) / count);
 }

@@ -6,7 +6,7 @@
 
 namespace burnish {
 
-/// A knot of material 0 with a sphere of material 1 before it, under three lights.
+/// Returns a scene: a knot of material 0 with a sphere of material 1 before it, under three lights.
 inline Scene knot_and_sphere() {
   Scene scene;
   scene.parts = {{make_shape(Shape::torus_knot, 6000), 0}, {make_shape(Shape::sphere, 1500), 1}};

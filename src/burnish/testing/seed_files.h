@@ -40,7 +40,8 @@ inline std::string mbsdf_seed() {
   return bytes;
 }
 
-/// A Fourier BSDF of these cosines. `series_of(mu_i, mu_o)` has the coefficients of a pair, channel after channel.
+/// Returns a Fourier BSDF of these cosines. `series_of(mu_i, mu_o)` returns the coefficients of a pair, channel
+/// after channel.
 inline std::string fourier_bytes(const std::vector<float>& mu, std::uint32_t channels,
                                  std::vector<float> (*series_of)(float mu_i, float mu_o),
                                  const std::string& remarks = "") {
@@ -80,7 +81,7 @@ inline std::string rgl_seed() {
   return burnish::format_rgl(burnish::make_rgl_table(burnish::parse_analytic("ggx").ref(), options));
 }
 
-/// The same of three wavelengths.
+/// Returns an RGL file of three wavelengths.
 inline std::string spectral_rgl_seed() {
   burnish::RglOptions options;
   options.theta_i_count = 2;
@@ -90,7 +91,7 @@ inline std::string spectral_rgl_seed() {
       burnish::make_rgl_table(burnish::parse_analytic("ggx:f0=0.8/0.4/0.2").ref(), options));
 }
 
-/// A line and a disk.
+/// Returns a model of a line and a disk.
 inline burnish::Model small_model() {
   using namespace burnish;
   const Table p{
@@ -132,7 +133,7 @@ inline std::string compact_seed() {
                         CompactContent::model_and_notes);
 }
 
-/// A single neural encoding, of weights with few digits.
+/// Returns a single neural encoding, of weights with few digits.
 inline std::string neural_seed() {
   std::string row = "seed";
   for (std::size_t i = 0; i < burnish::NeuralBrdf::kWeights; ++i)
@@ -213,7 +214,7 @@ inline const std::string kTensorTree =
     "}</ScatteringData>"
     "</WavelengthDataBlock></WavelengthData></Layer></Optical></WindowElement>";
 
-/// One of rank 4: sixteen cells, the first divided again.
+/// A tensor tree of rank 4: sixteen cells, the first divided again.
 inline const std::string kTensorTree4 =
     "<WindowElement><Optical><Layer><DataDefinition><IncidentDataStructure>TensorTree4</"
     "IncidentDataStructure>"
@@ -226,10 +227,10 @@ inline const std::string kTensorTree4 =
 
 inline const std::string kIlluminant = "# a lamp\n400 0.5\n550\t1\n\n700.5 2e3\n";
 
-/// The bytes of a number over and over are a UTIA table of it.
+/// Bytes of a number, which repeated are a UTIA table of it.
 inline const std::string kUtia{"\x9a\x99\x99\x99\x99\x99\xf1\x3f", 8};
 
-/// A surface of the small model, with normals.
+/// Returns a surface of the small model, with normals.
 inline burnish::SurfaceModel small_surface() {
   using namespace burnish;
   const std::vector<float> weights{0, 1, 0.5f, 0.25f, 1, 0},
@@ -251,8 +252,8 @@ inline const std::string kCapture =
     R"({"file":"a.png","light":{"direction":[0,0.6,0.8]},"view":{"position":[0,0,2.5]},"scale":[1,2,3],"mask":"m.png"},)"
     R"({"file":"b.png","light":{"position":[1,0,3]},"view":{"direction":[0,0,1]},"scale":0.5,"held_out":true}]})";
 
-/// A small file of each format that is read. What is added here is cut, bent and fuzzed, and opened by the page's tests,
-/// which look for a new one under the first word of its title (Format), in small letters.
+/// Returns a small file of each format that is read. Tests cut and bend them, and fuzzers start from them. The page's
+/// tests open them, and find a new one under the first word of its title (Format), in small letters.
 inline std::vector<std::pair<std::string, std::string>> all_seeds() {
   return {{"merl", merl_seed()},
           {"mbsdf", mbsdf_seed()},

@@ -12,7 +12,7 @@
 
 namespace burnish {
 
-/// Weights at random in [0, scale], every fourth 0.
+/// Returns random weights in [0, scale], every fourth 0.
 inline SurfaceMap random_map(int width, int height, std::size_t channels, TableFormat format, float scale,
                              std::uint64_t seed) {
   Pcg32 random(seed);
@@ -22,7 +22,7 @@ inline SurfaceMap random_map(int width, int height, std::size_t channels, TableF
   return {width, height, channels, format, scale, values};
 }
 
-/// x and y of vectors at random, no longer than `longest` and no shorter than `shortest`.
+/// Returns x and y of random vectors, no longer than `longest` and no shorter than `shortest`.
 inline SurfaceMap random_vectors(int width, int height, double shortest, double longest, std::uint64_t seed) {
   Pcg32 random(seed);
   std::vector<float> values;
@@ -35,7 +35,8 @@ inline SurfaceMap random_vectors(int width, int height, double shortest, double 
   return {width, height, 2, TableFormat::half, 1, values};
 }
 
-/// Three lobes, of volumes, lines and a hemisphere; grey and coloured weights in both formats, normals and tangents.
+/// Returns three lobes, of volumes, lines and a hemisphere. Weights are grey and coloured, in both formats; normals
+/// and tangents are random.
 inline SpatialBrdf random_surface(int width, int height) {
   FactoredBrdf lobes =
       random_model("z(theta_h) g(theta_h,theta_d,phi_d) + p(wo) q(h) p(wi) + r(theta_d)",
@@ -48,7 +49,7 @@ inline SpatialBrdf random_surface(int width, int height) {
            .tangents = random_vectors(width, height, 1, 1, 5)}};
 }
 
-/// Two smooth lobes whose weights and normals run in waves, side by side texels.
+/// Returns two smooth lobes whose weights and normals run in waves over `side` by `side` texels.
 inline SpatialBrdf smooth_surface(int side) {
   std::vector<float> first, second, normals;
   for (int y = 0; y < side; ++y)

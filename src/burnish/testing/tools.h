@@ -15,7 +15,7 @@
 
 namespace burnish {
 
-/// A folder of this process that goes when the object goes.
+/// A folder of this process that the destructor removes.
 struct TemporaryFolder {
   std::filesystem::path path;
 
@@ -39,13 +39,13 @@ inline std::string read(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// A file in memory.
+/// Returns a file in memory.
 inline FileBytes memory_file(std::string_view content) {
   const auto* data = reinterpret_cast<const std::byte*>(content.data());
   return {"test.file", {data, data + content.size()}};
 }
 
-/// The message of the Error that `parse` throws; empty if it throws none.
+/// Returns the message of the Error that `parse` throws; empty if it throws none.
 template <class Parse>
 std::string error_of(const Parse& parse) {
   try {
@@ -56,8 +56,8 @@ std::string error_of(const Parse& parse) {
   return {};
 }
 
-/// What a command came to: its exit status, -1 where a signal ended it, and what it said on both streams, or
-/// on those that the command leaves alone.
+/// The result of a command: its exit status, -1 if a signal ended it, and its output on both streams. A
+/// stream that the command redirects is not in the output.
 struct Outcome {
   int status = -1;
   std::string output;
@@ -74,7 +74,7 @@ inline Outcome run(const std::string& command) {
   return outcome;
 }
 
-/// Whether the shell finds a program.
+/// Returns true if the shell finds a program.
 inline bool has_tool(const std::string& name) {
   return run("command -v " + name).status == 0;
 }

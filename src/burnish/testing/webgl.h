@@ -17,7 +17,7 @@
 
 namespace burnish {
 
-/// How tables are read and what they hold, of halves or floats.
+/// The filter of table reads, and whether tables hold halves or floats.
 struct ShaderVariant {
   ShaderFilter filter;
   bool halves;
@@ -108,9 +108,9 @@ const found = new Float32Array(4 * side * side), square = {width: side, height: 
 })();
 )";
 
-/// Writes a page into `folder`, and the numbers it loads, that evaluates the models' generated GLSL ES in
-/// WebGL2 at side^2 pairs, in each of kShaderVariants, and leaves the largest relative errors, divided by how
-/// much projections cancel, in data-result of its body.
+/// Writes a page into `folder`, and the numbers that it loads. The page evaluates the models' generated GLSL
+/// ES in WebGL2 at side^2 pairs, in each of kShaderVariants. It leaves the largest relative errors in
+/// data-result of its body, divided by the factor of shader_cancellation.
 inline void write_webgl_page(std::span<const ModelCase> models, int side,
                              const std::filesystem::path& folder) {
   const auto put = [&](const std::string& name, const std::vector<float>& values) {
@@ -167,8 +167,8 @@ inline void write_webgl_page(std::span<const ModelCase> models, int side,
   std::ofstream(folder / "page.html") << text << "];" << kWebGlRun << "</script></body>";
 }
 
-/// What Chromium finds for the page: errors a model, NaN where it cannot filter floats; empty where it does
-/// not run.
+/// Returns the errors that Chromium finds for each model of the page. An error is NaN if Chromium cannot
+/// filter floats. The result is empty if Chromium does not run.
 inline std::vector<VariantErrors> run_webgl(std::span<const ModelCase> models, int side,
                                             const std::filesystem::path& folder) {
   write_webgl_page(models, side, folder);
