@@ -21,14 +21,15 @@ using Json = nlohmann::json;
 constexpr int kCompactVersion = 1;
 constexpr std::uint64_t kSelfDescribed = 55799;  // [RFC8949, 3.4.6]
 constexpr std::string_view kName = "burnish";
-// name, version, channels, lambda_nm, kinds, tables, products, lobes; then notes; then what the model is part of
+// A file lists name, version, channels, lambda_nm, kinds, tables, products and lobes. The notes may follow, and
+// then the surface that the model is a part of.
 constexpr std::size_t kParts = 8, kExtendedParts = kParts + 2;
 constexpr std::size_t kMaxChannels = SymmetrizedBrdf::kMaxChannels;
 constexpr std::size_t kTableItems = 3;  // name, kind, texels
 constexpr std::size_t kLongestName = 255, kLongestNotes = 1 << 20;
 constexpr int kMaxNotesDepth = 32;
 
-// The numbers that stand for them in files: places in these lists.
+// Files hold numbers for these values: their places in the lists.
 constexpr std::array kShapes{TableShape::line, TableShape::disk, TableShape::grid, TableShape::volume};
 constexpr std::array kFormats{TableFormat::half, TableFormat::single, TableFormat::rgb9e5,
                               TableFormat::unorm8};
@@ -45,7 +46,7 @@ struct Axis {
   Warp warp;
 };
 
-/// A disk's two sides are one axis.
+/// Returns the number of a shape's axes in a file. The two sides of a disk are one axis.
 std::size_t axes_in_file(TableShape shape) {
   return static_cast<std::size_t>(projection_count(shape));
 }
@@ -91,7 +92,7 @@ bool is_name(const std::string& text) {
   return text.size() <= kLongestName && is_utf8(text) && std::ranges::none_of(text, control);
 }
 
-// A JSON object of bounded depth; nothing on anything else.
+// Returns the text as a JSON object of bounded depth; nothing for anything else.
 std::optional<Json> parse_notes(const std::string& text) {
   try {
     Json json = parse_shallow(text, kMaxNotesDepth);
@@ -102,7 +103,7 @@ std::optional<Json> parse_notes(const std::string& text) {
   return std::nullopt;
 }
 
-/// The properties that tables of one form, such as those of several lobes, have in common.
+/// The properties that tables of one kind share. Tables of several lobes are often of one kind.
 struct TableKind {
   TableLayout layout;
   TableFormat format = TableFormat::single;
@@ -122,8 +123,8 @@ std::vector<TableKind> kinds_of(std::span<const Table> tables) {
   return kinds;
 }
 
-/// The projections that the factors of a lobe are looked up by, one an axis: lobes often differ in their tables
-/// alone.
+/// The projections that the factors of a lobe are looked up by, one for each axis. Lobes often differ in their
+/// tables alone.
 using Product = std::vector<std::vector<Projection>>;
 
 Product product_of(const FactoredBrdf& brdf, const Lobe& lobe) {
@@ -141,8 +142,8 @@ std::vector<Product> products_of(const FactoredBrdf& brdf) {
   return products;
 }
 
-/// What a file keeps of the notes where all of them were not asked for: which part of a surface the model is, without
-/// which its directions would be read wrong. Nothing of other models.
+/// Returns the notes that a file keeps even without all notes. They state the part of a surface's BSDF that the model
+/// is of; without it, its directions would be read wrong. Returns nothing for notes without a part.
 std::optional<std::string> kept_notes(const std::string& text) {
   const std::optional<Json> json = parse_notes(text);
   if (!json || !json->contains("part")) return std::nullopt;
@@ -154,7 +155,7 @@ std::optional<std::string> kept_notes(const std::string& text) {
   return kept.dump();
 }
 
-/// One file in the making.
+/// Writes one file.
 class CompactWriter {
  public:
   using Append = std::function<void(CborWriter&)>;
@@ -170,7 +171,7 @@ class CompactWriter {
     cbor_.integer(brdf.channels());
     numbers(model.lambda_nm);
 
-    // tables of one kind name it by its place in a list
+    // A table names its kind by the place in this list.
     const std::vector<TableKind> kinds = kinds_of(brdf.tables());
     cbor_.list(kinds.size());
     for (const TableKind& k : kinds) kind(k);
@@ -181,7 +182,7 @@ class CompactWriter {
       cbor_.bytes(pack(table.format, table.channels, table.values));
     }
 
-    // so do lobes of one product
+    // A lobe names its product by the place in this list.
     const std::vector<Product> products = products_of(brdf);
     cbor_.list(products.size());
     for (const Product& p : products) product(p);
@@ -229,7 +230,7 @@ class CompactWriter {
     }
   }
 
-  // By its number, or the coefficients of wi, wo, mirror and n up to the last that is not 0.
+  // Writes a projection's number, or the coefficients of wi, wo, mirror and n up to the last that is not 0.
   void projection(const Projection& p) {
     if (const auto known = std::ranges::find(kNumberedProjections, p); known != kNumberedProjections.end())
       return cbor_.integer(known - kNumberedProjections.begin());
@@ -243,7 +244,7 @@ class CompactWriter {
   CborWriter cbor_;
 };
 
-/// One file being read.
+/// Reads one file.
 class CompactReader {
  public:
   explicit CompactReader(const FileBytes& file) : cbor_(file), name_(file.name) {}
@@ -271,7 +272,7 @@ class CompactReader {
       cbor_.fail(lambda_at, fmt::format("lambda_nm, none or {} wavelengths", channels_),
                  fmt::format("{}", model.lambda_nm.size()));
 
-    // the form of the tables, the tables, what is done with them
+    // Kinds of tables come first, then the tables, then the products and lobes that use them.
     read_list("kinds of tables", 0, kMaxCompactItems, [&] { kinds_.push_back(kind()); });
     tables();
     read_list("products", 0, kMaxCompactItems, [&] { products_.push_back(product()); });
@@ -280,7 +281,7 @@ class CompactReader {
     if (parts > kParts) model.notes = notes();
     if (!read) cbor_.end();
 
-    // the constructor checks how all of it fits together
+    // The constructor checks that all parts fit together.
     try {
       model.brdf = FactoredBrdf(channels_, std::move(tables_), std::move(lobes));
     } catch (const Error& error) {
@@ -311,7 +312,7 @@ class CompactReader {
     return list[static_cast<std::size_t>(cbor_.integer(what, 0, last))];
   }
 
-  /// Runs what throws errors without a place.
+  /// Runs a check whose errors have no place, and adds the file and the offset to them.
   template <class Check>
   auto checked(std::uint64_t offset, const Check& check) {
     try {

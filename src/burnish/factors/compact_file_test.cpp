@@ -21,7 +21,7 @@ Model read_compact(const std::string& bytes) {
   return parse_compact(memory_file(bytes));
 }
 
-// Whether both files of a model give it back, and each the other's bytes.
+// Expects that both files of a model give it back, and that each can be rewritten as the other to the byte.
 void expect_twins(const Model& model) {
   const std::string compact = format_compact(model, CompactContent::model_and_notes),
                     exr = format_model(model);
@@ -32,7 +32,7 @@ void expect_twins(const Model& model) {
   EXPECT_TRUE(format_model(read_compact(compact)) == exr);
   EXPECT_TRUE(format_compact(parse_model(memory_file(exr)), CompactContent::model_and_notes) == compact);
 
-  // without its notes, all else stays
+  // Without its notes, all else stays.
   const Model bare = read_compact(format_compact(model));
   EXPECT_TRUE(bare.brdf == model.brdf);
   EXPECT_EQ(bare.lambda_nm, model.lambda_nm);
@@ -53,7 +53,7 @@ TEST(CompactFile, RestoresModelsToTheLastBit) {
     }
 }
 
-// A model of transmission read as a reflection would be another material.
+// A model of transmission that is read as a reflection would be another material.
 TEST(CompactFile, KeepsThePartOfTheNotesWithoutTheOthers) {
   Model model{.brdf = smooth_model(model_case("Pqp"))};
   model.notes = R"({"band":"Visible","part":"transmission-front","source":"a.xml"})";
@@ -80,7 +80,7 @@ TEST(CompactFile, RestoresScalesThatNoFloatHolds) {
   expect_twins({.brdf = FactoredBrdf(3, tables, lobes)});
 }
 
-// As docs/notes/compact-file.md lists it.
+// docs/notes/compact-file.md lists these bytes.
 TEST(CompactFile, IsTheseBytes) {
   // clang-format off
   const std::string bytes =

@@ -24,7 +24,7 @@ Plot small_plot() {
   return plot;
 }
 
-// How many pixels have about this colour.
+// Returns the number of pixels that have about this colour.
 int count_pixels(const Image8& image, Color color) {
   int count = 0;
   for (int y = 0; y < image.height; ++y)
@@ -69,7 +69,7 @@ TEST(SvgPlot, DrawsTheSameCurvesAsPixels) {
   const Image8 image = to_image(small_plot());
   EXPECT_EQ(image.width, 320);
   EXPECT_EQ(image.height, 240);
-  EXPECT_NEAR(count_pixels(image, {255, 0, 0}), 16, 8);  // a dot 4.5 pixels wide
+  EXPECT_NEAR(count_pixels(image, {255, 0, 0}), 16, 8);  // the dot is 4.5 pixels wide
   EXPECT_GT(count_pixels(image, {0x1b, 0x6c, 0xa8}), 100);
 }
 

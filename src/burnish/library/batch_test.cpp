@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Angles in degrees, values in 1/sr: fitted in a moment.
+// Angles are in degrees, values in 1/sr. The table is fitted in a moment.
 constexpr const char* kScattered =
     "theta_i,phi_i,theta_o,phi_o,value\n5,0,12,0,0.3\n22,0,11,60,0.2\n40,0,17,60,0.25\n50,0,50,180,0.5\n"
     "11,0,62,110,0.2\n28,0,29,175,0.6\n62,0,23,50,0.2\n";
@@ -78,7 +78,7 @@ TEST_F(BatchOfMaterials, HasTheBitsOfEachFitAlone) {
         << name;
   }
   EXPECT_EQ(models().size(), 3u);
-  // one after the other, and in little memory, they are the same
+  // Models that are fitted one after the other, and in little memory, are the same.
   const auto together = models();
   options.folder = folder.path / "alone";
   options.threads = 1;
@@ -117,7 +117,7 @@ TEST_F(BatchOfMaterials, GoesOnWithoutDoingAgainWhatIsWhole) {
   for (const auto& [name, record] : run()) EXPECT_EQ(record.earlier, name != "missing") << name;
   EXPECT_EQ(fits_begun(), 4u);
 
-  // half a model, and an input that is another: these two alone
+  // One model is cut in half, and one input is replaced. These two alone are fitted again.
   write(options.folder / "models/felt.burnish", before.at("felt.burnish").substr(0, 20));
   write(source("damaged.csv"), kScattered);
   const auto repaired = run();
@@ -126,7 +126,7 @@ TEST_F(BatchOfMaterials, GoesOnWithoutDoingAgainWhatIsWhole) {
   EXPECT_EQ(models().at("felt.burnish"), before.at("felt.burnish"));
   EXPECT_EQ(models().at("damaged.burnish"), before.at("felt.burnish"));
 
-  // other options: all of them
+  // With other options, all are fitted again.
   options.fit = [](bool) {
     return FitOptions{.form = OneLobe{.model = "pqp", .tables = {"p=9x9"}}, .samples = 500, .score = false};
   };
@@ -148,7 +148,7 @@ TEST_F(BatchOfMaterials, MakesTableAndPageAgainThatAreNotWhole) {
   EXPECT_EQ(std::filesystem::last_write_time(options.folder / kFiguresTable), before);
 }
 
-// As of a process that was killed between its journal's line and the last rename.
+// The folder looks as if a process was killed between its journal's line and the last rename.
 TEST_F(BatchOfMaterials, GivesFilesTheirNamesThatAreWholeUnderOthers) {
   const auto records = run();
   const auto before = models();
@@ -171,7 +171,7 @@ TEST_F(BatchOfMaterials, IsSharedByThoseWhoWorkInItsFolder) {
     }
   EXPECT_EQ(all, 10u);
   EXPECT_EQ(fits_begun(), 4u);
-  EXPECT_EQ(earlier, 4u);  // the missing file is looked for by both
+  EXPECT_EQ(earlier, 4u);  // both batches look for the missing file
 }
 
 TEST_F(BatchOfMaterials, ExportsEachUnderItsName) {

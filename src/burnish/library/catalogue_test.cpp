@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-// What FUNCTION(...); of a script is called with.
+// Returns the argument of the call FUNCTION(...); in a script.
 json argument_of(const std::string& script) {
   const std::size_t begin = script.find('(') + 1;
   return json::parse(script.substr(begin, script.rfind(')') - begin));
@@ -62,9 +62,10 @@ TEST_F(Catalogue, HoldsFiguresPicturesAndModels) {
   ASSERT_EQ(all["failed"].size(), 1u);
   EXPECT_EQ(all["failed"][0]["reason"], "no such file");
 
-  // picture 66, counted from 0, is the third of the second sheet
+  // Picture 66, counted from 0, is the third of the second sheet.
   EXPECT_EQ(read_png(folder.path / "page/pictures-1.png").at(4 * 2, 0)[0], '6');
-  // the bytes that base64url has other digits for; printf 'bytes of material0\xff\xfe\xfb' | basenc --base64url
+  // The bytes include those that base64url has other digits for. This command computes the link:
+  // printf 'bytes of material0\xff\xfe\xfb' | basenc --base64url
   EXPECT_EQ(models(0)["links"][0], "Ynl0ZXMgb2YgbWF0ZXJpYWww__77");
   EXPECT_EQ(models(2)["links"].size(), 7u);
   EXPECT_EQ(models(2)["links"][6], "");

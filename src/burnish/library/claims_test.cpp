@@ -41,7 +41,7 @@ TEST(Claims, OfWhoLivesAreNotTakenOver) {
   }
 }
 
-// As of a machine that fell over: another's process, whose file never changes.
+// The claim is of a machine that fell over: another machine's process, whose file never changes.
 TEST(Claims, OfWhoIsSilentAreTakenOverByOne) {
   const TemporaryFolder folder("claims_silent");
   Claims one(folder.path, "one", 100ms), two(folder.path, "two", 100ms);
@@ -69,7 +69,7 @@ TEST(Claims, OfAProcessOfThisMachineThatEndedAreTakenOverAtOnce) {
   EXPECT_TRUE(Claims(folder.path, "one", 60s).take("gold"));
 }
 
-// Each round begins with the claim of a process that is gone, which one takes over and gives back.
+// Each round begins with the claim of a process that has ended. One taker takes it over and gives it back.
 TEST(Claims, AreHeldByOneWhileATakenOverOneIsGivenBack) {
   const TemporaryFolder folder("claims_handed_on");
   const pid_t child = ::fork();

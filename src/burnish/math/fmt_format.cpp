@@ -1,4 +1,4 @@
-// What fmt's own src/format.cc compiles, so that its headers need not do so in every file.
+// Instantiates what fmt's own src/format.cc compiles, so that fmt's headers need not do so in every file.
 #include <fmt/format-inl.h>
 
 FMT_BEGIN_NAMESPACE

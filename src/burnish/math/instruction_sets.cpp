@@ -1,13 +1,13 @@
-// What Highway's headers call of its library, so that evaluation links no other: which sets of instructions the
-// processor has, and which of them was chosen. Kernels are compiled for the sets of highway_targets.h alone; nothing
-// else is told apart here.
+// Defines the functions of Highway's library that its headers call, so that evaluation links no other library. They
+// return the sets of instructions that the processor has, and the chosen set. Kernels are compiled for the sets of
+// highway_targets.h alone, so no other sets are distinguished.
 #include <atomic>
 #include <cstdint>
 #include <initializer_list>
 
 #include <burnish/math/highway_targets.h>
 
-// after the list of its targets
+// This header follows the list of its targets.
 #include <hwy/targets.h>
 
 #if HWY_ARCH_X86
@@ -32,14 +32,15 @@ struct Registers {
   unsigned a = 0, b = 0, c = 0, d = 0;
 };
 
-// Zeros where the processor does not know the leaf.
+// Returns the registers of a leaf, zeros if the processor does not know it.
 Registers cpuid(unsigned leaf) {
   Registers r;
   __get_cpuid_count(leaf, 0, &r.a, &r.b, &r.c, &r.d);
   return r;
 }
 
-// Which registers the system keeps for each thread; only where the processor says that it may be asked.
+// Returns a mask of the registers that the system keeps for each thread. It may be called only if the
+// processor says so.
 std::uint32_t kept_registers() {
   std::uint32_t low, high;
   asm("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
@@ -50,13 +51,14 @@ bool has(std::uint32_t found, std::uint32_t wanted) {
   return (found & wanted) == wanted;
 }
 
-// Highway's conditions for its targets, by the processor's manual.
+// Returns the targets that the processor supports, by Highway's conditions and the processor's manual.
 std::int64_t detected() {
-  // SSSE3, SSE4.1, SSE4.2, carry-less products, AES
+  // These bits are SSSE3, SSE4.1, SSE4.2, carry-less products and AES.
   constexpr auto kSse4 = bits({9, 19, 20, 1, 25});
-  // FMA, AVX, half floats, and that kept_registers may be asked; then BMI, AVX2, BMI2; and LZCNT
+  // The first set is FMA, AVX, half floats, and permission to call kept_registers. The second is BMI, AVX2,
+  // BMI2, the third LZCNT.
   constexpr auto kAvx = bits({12, 28, 29, 27}), kAvx2 = bits({3, 5, 8}), kLzcnt = bits({5});
-  // F, DQ, CD, BW, VL
+  // These bits are F, DQ, CD, BW and VL.
   constexpr auto kAvx512 = bits({16, 17, 28, 30, 31});
   constexpr auto kKeptAvx = bits({1, 2}), kKeptAvx512 = bits({5, 6, 7});
 

@@ -13,12 +13,12 @@ namespace {
 
 constexpr double kBelowOne = 0x1.fffffffffffffp-1;
 constexpr double kQuarterPi = kPi / 4;
-constexpr double kEdge = 1e-12;  // of the square's width
+constexpr double kEdge = 1e-12;  // relative to the square's width
 
 using Coordinates = std::array<double, 4>;
 
-/// Within [0, 1), so that the last cell holds its end. What is short of a cell's edge by rounding lies on it, in the
-/// upper cell.
+/// Moves a coordinate into [0, 1), so that the last cell holds its end. A coordinate that rounding left just below a
+/// cell's edge moves onto it, into the upper cell.
 double inside(double x) noexcept {
   return std::clamp(x + kEdge, 0.0, kBelowOne);
 }

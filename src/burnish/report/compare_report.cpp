@@ -24,7 +24,7 @@
 
 namespace burnish {
 
-// The files of web/comparison.
+// Returns the files of web/comparison.
 std::span<const EmbeddedFile> comparison_files();
 
 namespace {
@@ -87,18 +87,18 @@ nlohmann::ordered_json json_of(std::span<const ComparedFigures> compared, const 
   return list;
 }
 
-// A file's name is free text in whatever encoding: what is no UTF-8 is replaced.
+// Writes a JSON text. A file's name is free text in any encoding, so bytes that are no UTF-8 are replaced.
 std::string dump(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-// 1, 2 or 5 times a power of ten, at or above v.
+// Returns the least number that is 1, 2, 5 or 10 times a power of ten and at or above v.
 double round_up(double v) {
   const double power = std::pow(10.0, std::floor(std::log10(v))), lead = v / power;
   return power * (lead <= 1 ? 1 : lead <= 2 ? 2 : lead <= 5 ? 5 : 10);
 }
 
-// The end of a model's colour scale: the 99.5th percentile of the worst of its pictures, rounded up.
+// Returns the end of a model's colour scale: the 99.5th percentile of the worst of its pictures, rounded up.
 double heat_scale(const SpherePictures& reference, const SpherePictures& model) {
   constexpr double kShare = 0.995, kMin = 0.02;
   double scale = kMin;
@@ -125,7 +125,7 @@ void write_plot(const fs::path& stem, const Plot& plot) {
   write_png(stem.string() + ".png", to_image(plot));
 }
 
-// A file of web/comparison with what stands for its marks.
+// Returns a file of web/comparison with values in place of its marks.
 std::string filled(std::string_view file, const std::map<std::string_view, std::string>& marks) {
   return with_marks(text_of(comparison_files(), file), marks);
 }
@@ -168,7 +168,7 @@ std::string expected_row(std::string_view name, const ExpectedError& expected) {
                                       {"BANDS", std::move(bands)}});
 }
 
-// How far off everything may be between scattered samples.
+// Writes the errors expected between scattered samples, of the function itself and of each model.
 std::string expected_html(const Measurement& measurement, std::span<const ComparedFigures> compared) {
   if (!measurement.expected) return {};
   std::string heads, rows = expected_row("the function between the samples", *measurement.expected);
@@ -198,7 +198,7 @@ std::string factor_file(std::size_t model, const Table& table) {
   return fmt::format("factors/model_{}_{}.png", model + 1, table.name);
 }
 
-// The pictures of a factored model's tables; nothing for any other BRDF.
+// Writes the pictures of a factored model's tables; nothing for any other BRDF.
 std::string tables_html(const ComparedModel& model, std::size_t number) {
   if (!model.factored) return {};
   std::string tables;
@@ -237,7 +237,7 @@ std::string index_html(const std::string& reference_name, std::span<const Compar
                                {"PLOTS", std::move(charts)}});
 }
 
-// Errors name the model.
+// Scores a model; errors name it.
 ErrorFigures score_of(const Scorer& scorer, const ComparedModel& model) {
   try {
     return scorer.score(model.brdf);
@@ -398,8 +398,8 @@ ColorBar difference_bar(double scale) {
   return {scale, "mean |difference| of the shown values"};
 }
 
-// The sheet of all models side by side: a row of spheres and one of differences a light; the reference's
-// spheres are there already.
+// Returns the sheet of all models side by side, with the reference's spheres already in it. Each light has a
+// row of spheres and a row of differences.
 ContactSheet start_overview(const fs::path& folder, const std::string& reference_name,
                             const SpherePictures& reference, double scale) {
   ContactSheet overview{reference_name, {"reference"}, {}, {}, difference_bar(scale)};
@@ -416,7 +416,7 @@ ContactSheet start_overview(const fs::path& folder, const std::string& reference
 // Writes the spheres, a sheet for every model and the overview of all.
 void write_pictures(const fs::path& folder, const std::string& reference_name, const Scorer& scorer,
                     std::span<const ComparedModel> models, std::span<const ComparedFigures> compared) {
-  // every model's spheres and the end of its colour scale
+  // The sheets need every model's spheres and the end of its colour scale.
   const SpherePictures& reference = scorer.reference_pictures();
   const int size = scorer.options().image_size;
   std::vector<SpherePictures> pictures;
@@ -426,14 +426,15 @@ void write_pictures(const fs::path& folder, const std::string& reference_name, c
   const auto dome = [size](BrdfRef brdf) { return tone_map(render_dome(brdf, size), 1); };
   const Image reference_dome = dome(scorer.reference());
 
-  // side by side they share the median model's scale: one bad model does not hide what the others do
+  // The overview has the median model's scale, so that one bad model does not hide the differences of the
+  // other models.
   std::vector<double> sorted = scales;
   std::ranges::sort(sorted);
   const double shared_scale = sorted[(sorted.size() - 1) / 2];
   ContactSheet overview = start_overview(folder, reference_name, reference, shared_scale);
 
   for (std::size_t m = 0; m < models.size(); ++m) {
-    // a row for every light, on the model's own sheet and on the overview
+    // Each light adds a row to the model's own sheet and to the overview.
     ContactSheet sheet{
         reference_name, {"reference", heading(compared[m]), "difference"}, {}, {}, difference_bar(scales[m])};
     overview.column_labels.push_back(heading(compared[m]));
@@ -450,7 +451,7 @@ void write_pictures(const fs::path& folder, const std::string& reference_name, c
       write_png(folder / "spheres" / (name + "_difference.png"), heat);
     }
 
-    // the dome, on its own sheet only
+    // The dome stands on the model's own sheet only.
     const Image model_dome = dome(models[m].brdf);
     sheet.row_labels.push_back("dome");
     sheet.cells.push_back({to_image8(reference_dome), to_image8(model_dome),

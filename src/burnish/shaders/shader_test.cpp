@@ -33,7 +33,7 @@ Shader shader_of(const ModelCase& model, ShaderLanguage language, ShaderFilter f
   return generate_shader(smooth_model(model), {language, filter, model.name});
 }
 
-// All models in one program that reads direction pairs and writes what they evaluate to.
+// All models stand in one program, which reads direction pairs and writes their values.
 TEST(Shader, CppAgreesWithTheDefinitionToOnePartIn100000) {
   if (!has_tool("c++")) GTEST_SKIP() << "no C++ compiler";
   const TemporaryFolder folder("shaders");
@@ -45,7 +45,7 @@ TEST(Shader, CppAgreesWithTheDefinitionToOnePartIn100000) {
     calls += fmt::format(
         "    put(burnish_{0}(wi, wo));\n    put(burnish_{0}_world(n, t, turn(wi), turn(wo)));\n", model.name);
   }
-  // The world frame is the local one with its axes exchanged: the same numbers.
+  // The world frame is the local one with its axes exchanged, so it gives the same numbers.
   program +=
       "using namespace burnish_shader;\n"
       "static void put(vec3 f) { fwrite(&f, 4, 3, stdout); }\n"
@@ -163,7 +163,7 @@ TEST(Shader, HasTwoTexturesAtMost) {
     }
     for (const ShaderLanguage language : kShaderLanguages)
       for (const ShaderFilter filter : {ShaderFilter::exact, ShaderFilter::hardware}) {
-        if (language == ShaderLanguage::cpp) continue;  // which has an array a table
+        if (language == ShaderLanguage::cpp) continue;  // C++ has an array for each table
         EXPECT_LE(generate_shader(brdf, {language, filter}).textures.size(), 2u)
             << model.name << " " << to_string(language);
       }
@@ -172,7 +172,8 @@ TEST(Shader, HasTwoTexturesAtMost) {
   }
 }
 
-// What a filtered read between a table's outermost nodes can meet is the table's: its nodes, and its edge again.
+// A filtered read between a table's outermost nodes meets texels of that table alone: its nodes, and its edge
+// again.
 TEST(Shader, RepeatsTheEdgesOfTablesThatShareATexture) {
   const ModelCase model{"m",
                         "a(wo) b(h) a(wi) c(h) + d(theta_d) e(theta_h,theta_d) + f(h,d,phi_d) g(phi_d,h,d)",
@@ -225,7 +226,7 @@ TEST(Shader, MakesARowOfLinesOneDimensionalWhereAsked) {
   EXPECT_GT(height(model_case("DiskPqp")), 1);
 }
 
-// A line times a volume, both over the root of tan(theta_h / 2).
+// The model is a line times a volume, both spaced by the root of tan(theta_h / 2).
 TEST(Shader, OfALineTimesAVolumeIsSmall) {
   const Shader shader =
       generate_shader(smooth_model(model_case("Volume")), {.filter = ShaderFilter::hardware});
@@ -256,7 +257,7 @@ TEST(Shader, TakesAFormatThatHoldsAllTables) {
   EXPECT_EQ(format_of_textures(single, half), single);
 }
 
-// A filtered read of texels of half floats.
+// Returns a filtered read of texels of half floats.
 std::array<double, 3> half_sample(const ShaderTexture& texture, std::span<const double> at) {
   const std::array sides{texture.width, texture.height, std::max(texture.depth, 1)};
   std::array<double, 3> sum{};
@@ -279,7 +280,7 @@ std::array<double, 3> half_sample(const ShaderTexture& texture, std::span<const 
   return sum;
 }
 
-// The largest relative error of a shader with half products where f is between `least` and 3e4.
+// Returns the largest relative error of a shader with half products at values of f between `least` and 3e4.
 double half_error(const FactoredBrdf& brdf, double least) {
   const ShaderFormula formula =
       shader_formula(brdf, {.filter = ShaderFilter::hardware, .half_products = true});
@@ -310,7 +311,7 @@ TEST(HalfProducts, AreWithinOnePercent) {
     EXPECT_LE(half_error(smooth_model(model), 1e-4), 0.01) << model.name;
 }
 
-// Factors of 2^19 that only together make a reflectance: what fits have at the horizon.
+// Fits have factors of 2^19 at the horizon, which make a reflectance only together.
 TEST(HalfProducts, HoldTablesThatMakeUpForEachOther) {
   const ModelCase models[] = {
       {"lines", "p(wo) q(h) p(wi) r(theta_d)", {"p=64", "q=64", "r=64"}, 3},
@@ -333,7 +334,7 @@ TEST(HalfProducts, HoldTablesThatMakeUpForEachOther) {
     }
 }
 
-// Volumes and lines, lobes of lines, hemispheres.
+// The models have volumes and lines, lobes of lines, and hemispheres.
 TEST(HalfProducts, HoldWhatFitsGive) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const char* const paint = "ggx:alpha_x=0.1,alpha_y=0.1,f0=0.5/0.3/0.1,kd=0.2";
@@ -356,7 +357,7 @@ TEST(HalfProducts, TakeTheHardwareFilter) {
   EXPECT_THROW(generate_shader(brdf, {.half_products = true}), Error);
 }
 
-// The lines of a text that have a word.
+// Returns the lines of a text that have a word.
 std::vector<std::string> lines_with(const std::string& text, std::string_view word) {
   std::vector<std::string> found;
   std::istringstream lines(text);
@@ -403,7 +404,8 @@ TEST(ShaderPlaces, AreWrittenWhereTheyAreAskedFor) {
     EXPECT_THROW(text(ShaderLanguage::glsl, places), Error);
 }
 
-// Two materials whose files are joined as a user joins them: a line for the compiler, one file, another.
+// The files of two materials are joined as a user joins them: a line for the compiler, one file, then the
+// other.
 TEST(ShaderPlaces, PutSeveralMaterialsIntoOneModule) {
   BURNISH_SKIP_WHERE_SANITIZED();
   int compiled = 0;

@@ -16,7 +16,7 @@
 namespace burnish {
 namespace {
 
-// Grey weights of bytes alone, as fits have them.
+// Returns a surface whose weights are grey bytes alone, as fits have them.
 SpatialBrdf grey_surface(std::size_t lobes, bool normals) {
   std::string model;
   for (std::size_t j = 0; j < lobes; ++j)
@@ -97,10 +97,10 @@ TEST(MapPacking, KeepsPairsInBlocks) {
   for (std::size_t j = 0; j < packed.weights.size(); ++j)
     expect_near(surface.maps().weights[j], packed.weights[j], 0.02);
   expect_near(*surface.maps().normals, *packed.normals, 0.004);
-  EXPECT_THROW(pack_maps(random_surface(4, 4), "m", true), Error);  // has weights of halves
+  EXPECT_THROW(pack_maps(random_surface(4, 4), "m", true), Error);  // the surface has weights of halves
 }
 
-// C++ has no textures: the program samples the maps of the test's places beforehand.
+// C++ has no textures, so the program samples the maps of the test's places beforehand.
 TEST(SpatialShader, CppAgreesWithTheDefinition) {
   if (!has_tool("c++")) GTEST_SKIP() << "no C++ compiler";
   const SpatialBrdf surface = random_surface(9, 7);
@@ -168,7 +168,7 @@ TEST(SpatialShader, CppAgreesWithTheDefinition) {
   }
 }
 
-// What calls a surface's functions, by language.
+// Returns the text of a main function that calls a surface's functions in a language.
 std::string surface_main(ShaderLanguage language) {
   const char* const call =
       "burnish_wall({0}(0.0, 0.6, 0.8), {0}(0.0, 0.0, 1.0), place) + burnish_wall_world({0}(0.0, 0.0, 1.0), "

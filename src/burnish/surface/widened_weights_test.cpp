@@ -8,14 +8,14 @@
 namespace burnish {
 namespace {
 
-constexpr int kWide = 8, kHigh = 6;  // 4 x 3, 2 x 1, 1 x 1
+constexpr int kWide = 8, kHigh = 6;  // its levels are 4 x 3, 2 x 1, 1 x 1
 constexpr std::array<WidenedLobe, 2> kCopies{{{.lobe = 0, .variance = 0.02}, {.lobe = 0, .variance = 0.2}}};
 
 double texel_of(const SurfaceMap& map, int x, int y, std::size_t level, std::size_t channel = 0) {
   return static_cast<double>(map.texel(x, y, level)[channel]);
 }
 
-/// Where the weights of a surface of two lobes, the second without copies, stand.
+/// Returns the maps of a surface of two lobes, the second without copies.
 SurfaceMaps two_lobes(SurfaceMap first, SurfaceMap normals) {
   SurfaceMap second = random_map(kWide, kHigh, 1, TableFormat::half, 1, 7);
   return {.weights = {std::move(first), std::move(second)}, .normals = std::move(normals), .tangents = {}};
@@ -40,7 +40,7 @@ TEST(WidenedWeights, ShareTheMeanWeight) {
       for (const std::size_t copy : {2, 3}) EXPECT_EQ(maps.weights[copy].texel(x, y), SurfaceMap::Value{});
     }
   double shared = 0;
-  // shares are rounded to halves, the mean once a level, up to three times
+  // Shares are rounded to halves, the mean once in each level, up to three times.
   for_each_coarse_texel(own.weights[0], [&](int x, int y, std::size_t level) {
     for (std::size_t c = 0; c < 3; ++c) {
       const double copies =
@@ -54,7 +54,7 @@ TEST(WidenedWeights, ShareTheMeanWeight) {
 }
 
 TEST(WidenedWeights, HaveTheVarianceOfTheNormals) {
-  // equal weights, so that every texel counts alike
+  // Equal weights let every texel count alike.
   const SurfaceMap even(kWide, kHigh, 1, TableFormat::half, 1, std::vector<float>(kWide * kHigh, 0.75f)),
       normals = random_vectors(kWide, kHigh, 0, 0.6, 3);
   const SurfaceMaps maps = with_widened_weights(two_lobes(even, normals), kCopies);
@@ -76,11 +76,12 @@ TEST(WidenedWeights, HaveTheVarianceOfTheNormals) {
   });
 }
 
-// A texel counts by its weight: of those without, normals may scatter as they like about the mean.
+// A texel counts by its weight. Normals of texels without weight may scatter about the mean.
 TEST(WidenedWeights, StayWithTheLobeWhereItsNormalsAreOne) {
   std::vector<float> weights, normals;
   for (int i = 0; i < kWide * kHigh; ++i) {
-    // columns in pairs, one lit, one dark; rows of these tilted to both sides
+    // Columns alternate between lit and dark. The dark ones are tilted to one side in even rows, to the other
+    // in odd rows.
     const bool lit = i % 2 == 0;
     const float tilt = lit ? 0 : i / kWide % 2 == 0 ? 0.25f : -0.25f;
     weights.push_back(lit ? 1.0f : 0.0f);

@@ -22,7 +22,7 @@ Rgb eval(const OpenPbrParameters& parameters, Vec3 wi, Vec3 wo) {
 
 const Vec3 kLight = normalize({0.4, 0.2, 0.7}), kViewer = normalize({-0.5, 0.1, 0.6});
 
-// Of index 1 the highlight is gone, but the fit of its albedo keeps a little off the base.
+// With index 1 the highlight is gone, but the fit of its albedo still takes a little from the base.
 TEST(OpenPbr, ItsBaseIsLambertianWhereItIsSmooth) {
   const OpenPbrParameters matt{.base_color = {0.2, 0.5, 0.8}, .specular_ior = 1};
   const Rgb here = eval(matt, kLight, kViewer), there = eval(matt, normalize({-0.7, 0.2, 0.3}), kViewer);
@@ -33,7 +33,7 @@ TEST(OpenPbr, ItsBaseIsLambertianWhereItIsSmooth) {
 
 TEST(OpenPbr, AsAMetalHasTheDensityOfItsFacets) {
   const OpenPbrParameters metal{.base_color = 0.9, .base_metalness = 1, .specular_roughness = 0.05};
-  // D F / 4 at the peak, nothing masked
+  // The peak is D F / 4, with nothing masked.
   const double alpha = 0.0025;
   EXPECT_NEAR(eval(metal, {0, 0, 1}, {0, 0, 1}).g, 0.9 / (4 * kPi * alpha * alpha),
               0.01 * 0.9 / (4 * kPi * alpha * alpha));
@@ -43,7 +43,8 @@ TEST(OpenPbr, LosesNoLightBetweenRoughFacets) {
   for (const double roughness : {0.3, 0.6, 0.9}) {
     const OpenPbrParameters white{.base_color = 1, .base_metalness = 1, .specular_roughness = roughness};
     const OpenPbr metal(white);
-    // the fit of the albedo, in its source within 2 %, and the albedo itself
+    // The bound allows for the fit of the albedo, within 2 % by its source, and for the integral of the
+    // albedo.
     EXPECT_NEAR((albedo<128, 192>)(metal, normalize({0.3, 0.2, 0.8})), 1, 0.05) << roughness;
   }
 }
@@ -55,7 +56,7 @@ TEST(OpenPbr, StretchesAlongTheTangent) {
   EXPECT_FALSE(OpenPbr(brushed).isotropic());
 }
 
-// Every input moved on its own, from a material with all layers and from one that lacks some.
+// Every input moves on its own, from a material with all layers and from materials that lack some.
 TEST(OpenPbr, VariantsHaveTheBitsOfEachAlone) {
   const OpenPbrParameters all{.base_metalness = 0.4,
                               .base_diffuse_roughness = 0.3,
@@ -65,12 +66,12 @@ TEST(OpenPbr, VariantsHaveTheBitsOfEachAlone) {
                               .thin_film_weight = 0.6,
                               .thin_film_thickness = 0.4};
   const OpenPbrParameters bare{.base_metalness = 1, .thin_film_weight = 0.5, .thin_film_thickness = 0},
-      turned{.coat_weight = 0.5, .coat_roughness = 0.2, .geometry_tangent = 40};  // isotropic, others are not
+      turned{.coat_weight = 0.5, .coat_roughness = 0.2, .geometry_tangent = 40};  // isotropic, `others` not
   for (const OpenPbrParameters& start : {all, bare, turned, OpenPbrParameters{}}) {
     std::vector<OpenPbr> others;
     for (const OpenPbrInput& input : kOpenPbrInputs)
       for (const double value : {0.0, 0.37, 1.0}) {
-        if (input.name == "geometry_tangent") continue;  // of all the same
+        if (input.name == "geometry_tangent") continue;  // all variants share the tangent
         OpenPbrParameters moved = start;
         std::visit([&](auto member) { moved.*member = std::max(value, input.min); }, input.member);
         others.emplace_back(moved);
@@ -88,8 +89,8 @@ TEST(OpenPbr, VariantsHaveTheBitsOfEachAlone) {
   }
 }
 
-// Materials with and without each layer; directions anywhere, in highlights, and in corners: along the normal, equal,
-// mirrored, at the horizon.
+// Materials are drawn with and without each layer. Directions are drawn anywhere, in highlights, and in corners:
+// along the normal, equal, mirrored, at the horizon.
 TEST(OpenPbr, ItsExpressionIsTheDefinition) {
   Pcg32 random(8);
   for (int m = 0; m < 200; ++m) {
@@ -171,7 +172,7 @@ TEST(OpenPbr, ATurnedTangentTurnsWhatIsAnisotropic) {
     const double c = std::sqrt(0.75), s = 0.5;
     return Vec3{c * w.x - s * w.y, s * w.x + c * w.y, w.z};
   };
-  EXPECT_NEAR(eval(turned, kLight, viewer).r, eval(p, kLight, viewer).r, 1e-12);  // isotropic
+  EXPECT_NEAR(eval(turned, kLight, viewer).r, eval(p, kLight, viewer).r, 1e-12);  // both are isotropic
   EXPECT_TRUE(OpenPbr(turned).isotropic());
   for (double OpenPbrParameters::*anisotropy :
        {&OpenPbrParameters::specular_roughness_anisotropy, &OpenPbrParameters::coat_roughness_anisotropy}) {
