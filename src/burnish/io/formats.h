@@ -34,9 +34,9 @@ struct Format {
   std::string_view holds;    ///< what the format holds, a phrase
 
   Told told = Told::by_words;
-  /// Cheap and certain for all bytes; nullptr if the format is not read.
+  /// The recognizer, cheap and certain for all bytes; nullptr if the format is not read.
   bool (*looks_like)(const FileBytes& file) = nullptr;
-  /// Text comes in UTF-8. Throws Error.
+  /// The reader. Text comes in UTF-8. Throws Error.
   Source (*parse)(const FileBytes& file, const OpenOptions& options) = nullptr;
 
   /// The writer that convert calls, see convert_writers.h; nullptr if convert does not write the format. `losses` are

@@ -315,7 +315,7 @@ TEST(Klems, ReadsAShadeFabricThatReflectsLessThanItGets) {
   }
 }
 
-/// Degrees of a pair of directions, none on a border of patches.
+/// Pairs of directions by their angles in degrees, none on a border of patches.
 constexpr double kPairsOfRadiance[][4] = {
     {10, 20, 12, 205}, {40, 100, 38, 275}, {60, 230, 22, 70}, {70, 310, 72, 125}, {30, 0, 50, 90}};
 

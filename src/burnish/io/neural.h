@@ -11,7 +11,7 @@ namespace burnish {
 
 /// A neural encoding read from a file.
 struct NeuralFile {
-  std::string name;  ///< of the material
+  std::string name;  ///< name of the material
   NeuralBrdf brdf;
   Findings findings;
 };

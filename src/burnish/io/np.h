@@ -12,7 +12,7 @@ namespace burnish {
 
 /// A material of a Neural Processes model, read from its two files.
 struct NpFile {
-  std::string name;  ///< of the material
+  std::string name;  ///< name of the material
   NpBrdf brdf;
   Findings findings;
 };

@@ -82,7 +82,7 @@ Source from_spec(const std::string& spec) {
   return {spec, std::move(brdf), std::move(findings)};
 }
 
-/// Throws Error if the text is no file and nearly the name of an analytic model.
+/// Throws Error if the text is no file but nearly the name of an analytic model.
 void check_spelling(const std::string& spec) {
   if (std::error_code none; std::filesystem::exists(spec, none)) return;
   std::vector<std::string_view> names;

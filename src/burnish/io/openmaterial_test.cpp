@@ -79,7 +79,7 @@ TEST(OpenMaterial, IsWrittenAndReadToTheLastBit) {
     const auto [wi, wo] = file.samples.pairs[i];
     source.ref().eval(wi, wo, f);
     for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(colours.samples.at(i)[c], f[c], 1e-5 * f[c]);  // angles have the schema's ends
+      EXPECT_NEAR(colours.samples.at(i)[c], f[c], 1e-5 * f[c]);  // angles stop at the schema's ends
   }
 }
 

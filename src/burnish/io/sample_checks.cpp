@@ -38,8 +38,8 @@ struct Side {
   bool seen = false;
 };
 
-/// Counts the incidences that each side wins. A side wins if its largest value exceeds `factor` times the
-/// other side's.
+/// Counts the incidences that each side wins. A side wins if its largest value lies near theta_i and exceeds
+/// `factor` times the other side's.
 SideVotes side_votes(const Samples& samples, double factor) {
   // Samples of one incidence are sorted together.
   const auto key = [&](std::size_t i) {

@@ -72,7 +72,7 @@ TEST(SameIncidentAzimuth, LooksAtAzimuthsAndNotAtTheNormal) {
     samples.pairs.push_back({spherical_direction(theta, phi), {0, 0, 1}});
   };
   add(0.3, 1e-8);
-  add(1.2, -1e-8);  // across 2 pi
+  add(1.2, -1e-8);  // on the other side of 2 pi
   add(0, 2);
   EXPECT_TRUE(same_incident_azimuth(samples));
   add(0.3, kPi);

@@ -12,7 +12,7 @@ namespace burnish {
 
 namespace {
 
-constexpr double kHorizonCosine = 1e-6;  // a cosine that cannot be divided out
+constexpr double kHorizonCosine = 1e-6;  // a smaller cosine cannot be divided out
 
 constexpr std::array<std::string_view, 8> kNamesOfF = {"brdf", "bsdf",  "f",      "fr",
                                                        "f_r",  "value", "values", "val"};

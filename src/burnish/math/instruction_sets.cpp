@@ -1,5 +1,5 @@
 // Defines the functions of Highway's library that its headers call, so that evaluation links no other library. They
-// return the sets of instructions that the processor has, and the chosen set. Kernels are compiled for the sets of
+// report the sets of instructions that the processor has, and the chosen set. Kernels are compiled for the sets of
 // highway_targets.h alone, so no other sets are distinguished.
 #include <atomic>
 #include <cstdint>

@@ -90,7 +90,7 @@ TEST(MapPacking, KeepsPairsInBlocks) {
               value - static_cast<double>(pairs[2 * static_cast<std::size_t>(i) + places[c].component]);
           square += off * off / (width * height);
         }
-        EXPECT_LT(std::sqrt(square), most * (1 << l)) << l;  // a level spans twice as much in a block
+        EXPECT_LT(std::sqrt(square), most * (1 << l)) << l;  // a block spans twice as much each level
       }
     }
   };

@@ -159,7 +159,7 @@ inline const std::string kAstm =
     "theta_i,phi_i,theta_s,phi_s,R,G,B\n.1,.2,.3,.4,1,2,3\n.1,.5,.3,.4,4,5,6\n";
 inline const std::string kCsv =
     "# isotropic\ntheta_i,phi_i,theta_o,phi_o,r,g,b\n30,0,60,180,1,2,3\n10,5,20,30,0.1,-0.2,0.3\n";
-/// A table as spreadsheets write it, with remarks and columns that mean nothing.
+/// A table as spreadsheets write it, with remarks and columns of unknown names.
 inline const std::string kGonioCsv =
     "BRF Values\n\"Theta_i "
     "[deg]\";\"Phi_i\";theta_r;phi_r;450nm;550nm;remark\n30;0;60,5;180;0,1;0,2;\"a;b\"\n"

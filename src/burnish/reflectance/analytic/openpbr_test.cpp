@@ -27,7 +27,7 @@ TEST(OpenPbr, ItsBaseIsLambertianWhereItIsSmooth) {
   const OpenPbrParameters matt{.base_color = {0.2, 0.5, 0.8}, .specular_ior = 1};
   const Rgb here = eval(matt, kLight, kViewer), there = eval(matt, normalize({-0.7, 0.2, 0.3}), kViewer);
   EXPECT_NEAR(here.r, there.r, 1e-12);
-  EXPECT_NEAR(here.b / here.r, 4, 1e-6);  // as if a little were lost between walls
+  EXPECT_NEAR(here.b / here.r, 4, 1e-6);  // the loss is the same share in every channel
   EXPECT_LE(here.b, 0.8 / kPi);
 }
 
