@@ -13,8 +13,7 @@ namespace burnish {
 
 namespace {
 
-// Rounding of a file's digits may take a direction this far out of the hemisphere: 1.5708 is 3.7e-6 beyond
-// it.
+// Rounding of a file's digits may take a direction this far out of the hemisphere: 1.5708 is 3.7e-6 beyond it.
 constexpr double kSlack = 1e-5;
 
 using Coordinates = std::span<const double>;
@@ -58,8 +57,7 @@ DirectionPair retro(Coordinates x) noexcept {
   return {light, std::cos(angle) * light + std::sin(angle) * tangent};
 }
 
-/// Returns the pair of |H| in the tangent plane, |B| and the azimuth between them. H = (L + V) / 2, B = (L -
-/// V) / 2.
+/// Returns the pair of |H| in the tangent plane, |B| and the azimuth between them. H = (L + V) / 2, B = (L - V) / 2.
 DirectionPair stark(Coordinates x) noexcept {
   const Vec3 half{x[0], 0, std::sqrt(std::max(1 - x[0] * x[0] - x[1] * x[1], 0.0))};
   // B is orthogonal to H.

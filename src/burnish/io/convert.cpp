@@ -49,8 +49,7 @@ struct OtherSide {
   std::size_t channels() const noexcept { return source.channels(); }
   bool isotropic() const noexcept { return source.isotropic(); }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-    // An isotropic source has its sides exchanged if both directions are reflected at any one plane through
-    // the normal.
+    // An isotropic source has its sides exchanged if both directions are reflected at any one plane through the normal.
     return source.eval({wi.x, -wi.y, wi.z}, {wo.x, -wo.y, wo.z}, f);
   }
 };
@@ -121,8 +120,7 @@ bool has_colour(BrdfRef brdf) {
   return false;
 }
 
-/// Returns true if the description is in the file's own words. MERL and UTIA files have none, so theirs is
-/// burnish's.
+/// Returns true if the description is in the file's own words. MERL and UTIA files have none, so theirs is burnish's.
 bool has_own_remark(const Source& source) {
   const auto* angles = std::get_if<AngleTable>(&source.brdf);
   return is_measurement(source) && !std::holds_alternative<HalfDiffTable>(source.brdf) &&
@@ -138,8 +136,7 @@ std::string named_comments(const std::vector<std::string>& comments) {
   return comments.size() > kMost ? text + fmt::format(" and {} more", comments.size() - kMost) : text;
 }
 
-/// Returns the places of samples whose directions are both so far above the horizon that a reader accepts
-/// them.
+/// Returns the places of samples whose directions are both so far above the horizon that a reader accepts them.
 std::vector<std::size_t> above_horizon(const Samples& samples) {
   constexpr double kMinCosine = 1e-9;
   std::vector<std::size_t> above;

@@ -43,9 +43,8 @@ inline constexpr double kFarFromSource = 0.2;
 ///   within 0.1 % become one.
 ///
 /// Isotropic formats get the azimuth's mean of anisotropic sources. Formats that hold one side of the plane of
-/// incidence, or one order of the two directions, get the mean of both. Scattered formats keep scattered
-/// samples. From other sources they get samples drawn by `measure`, or the table's entries if the options say
-/// so.
+/// incidence, or one order of the two directions, get the mean of both. Scattered formats keep scattered samples. From
+/// other sources they get samples drawn by `measure`, or the table's entries if the options say so.
 ///
 /// If values were sampled anew, a loss states how far they are from the source, and above kFarFromSource a
 /// warning does too: the figure `relative` of metrics/error_figures.h over 2,000 drawn pairs. Throws Error,

@@ -199,8 +199,7 @@ class SpectraOfRows {
       reader.fail(fmt::format("at most {} wavelengths", kMaxFileChannels), in_quotes(reader.line()));
   }
 
-  /// Turns whole spectra into samples. Wavelengths of a column without a unit are micrometres if all of them are
-  /// small.
+  /// Turns whole spectra into samples. Wavelengths of a column without a unit are micrometres if all of them are small.
   void finish(std::optional<double> to_nm, Samples& samples, Findings& findings) const {
     constexpr double kLargestMicrometre = 50;
     const bool small = !bands_.empty() && bands_.rbegin()->first < kLargestMicrometre;

@@ -74,8 +74,7 @@ ColumnName plain_name(std::string_view cell) {
   return result;
 }
 
-/// The role of a direction's column. Names with s are of the scattered direction, or of the source beside a
-/// view.
+/// The role of a direction's column. Names with s are of the scattered direction, or of the source beside a view.
 enum class Role { theta_i, phi_i, theta_o, phi_o, theta_s, phi_s, theta, phi, turn, vector, none };
 
 constexpr std::array<std::string_view, 16> kIncident = {

@@ -53,8 +53,7 @@ CsvColumns read_columns(const TextReader& reader, const CsvHeader& header, bool 
 /// separator is dropped.
 void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
 
-/// Returns the cells of a header's line. Where blanks separate, a unit in brackets belongs to the name before
-/// it.
+/// Returns the cells of a header's line. Where blanks separate, a unit in brackets belongs to the name before it.
 std::vector<std::string_view> split_names(std::string_view line, char separator);
 
 /// Reads the numbers of rows. A decimal comma is accepted if commas do not separate cells. A table has one

@@ -305,8 +305,7 @@ TEST(Csv, LeavesOutRowsWithoutAValueAndNamesColumnsItPassesOver) {
   EXPECT_THAT(grazing.findings.warnings, ElementsAre(HasSubstr("1 rows on the horizon")));
 }
 
-/// Returns a table of theta_i 30 and 60 degrees with a peak at `peak` times theta_i in the plane of
-/// incidence.
+/// Returns a table of theta_i 30 and 60 degrees with a peak at `peak` times theta_i in the plane of incidence.
 std::string plane(double peak) {
   std::string text = "theta_i,theta_o,value\n";
   for (const int theta_i : {30, 60})

@@ -40,8 +40,7 @@ bool seen(const FileBytes& file) {
     return looks_like(std::span<const std::byte>(file.bytes));
 }
 
-/// Wraps a reader as Format::parse. It returns a table, samples or a function with findings, and takes options or
-/// none.
+/// Wraps a reader as Format::parse. It returns a table, samples or a function with findings, and takes options or none.
 template <auto parse>
 Source read_by(const FileBytes& file, const OpenOptions& options) {
   auto parsed = [&] {

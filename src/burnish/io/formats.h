@@ -69,8 +69,7 @@ const Format* text_format_of(const FileBytes& file);
 /// Returns the format of this name for convert; nullptr if there is none.
 const Format* format_to(std::string_view name) noexcept;
 
-/// Returns the format that convert writes into a file of this ending (".csv"); nullptr if the ending names
-/// none.
+/// Returns the format that convert writes into a file of this ending (".csv"); nullptr if the ending names none.
 const Format* format_ending_in(std::string_view ending) noexcept;
 
 /// Returns a format's usual endings and its further ones, each with its dot.

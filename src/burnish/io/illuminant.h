@@ -15,8 +15,7 @@ namespace burnish {
 /// or below zero.
 Illuminant parse_illuminant(const FileBytes& file);
 
-/// Returns a standard_illuminant by its name, or parse_illuminant of a file. Throws Error if `spec` is
-/// neither.
+/// Returns a standard_illuminant by its name, or parse_illuminant of a file. Throws Error if `spec` is neither.
 Illuminant open_illuminant(const std::string& spec);
 
 /// Returns rec709_weights of a file's wavelengths under open_illuminant(spec). Throws Error as these functions do,

@@ -90,8 +90,7 @@ PatchTable read_matrix(const WindowXml& reader, pugi::xml_node block, bool rows)
     table.outgoing = find_basis(reader, trimmed(block.child_value(rows ? column : row)), older_half);
     if (table.incident.size() * table.outgoing.size() == count) break;
   }
-  // The file numbers incident patches by the direction that the light goes to, wi by the one that it comes
-  // from.
+  // The file numbers incident patches by the direction that the light goes to, wi by the one that it comes from.
   table.incident.first_azimuth = kPi;
   const std::size_t in = table.incident.size(), out = table.outgoing.size();
   table.values = read_values(reader, text, in * out);

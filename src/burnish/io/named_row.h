@@ -23,9 +23,8 @@ struct NamedRowKind {
   std::string_view address;  ///< address of one row of several, such as "nbrdf:FILE#NAME"
 };
 
-/// Returns the row named `name`, or the only row if `name` is empty. Throws Error if a row up to it is
-/// anything else. Throws Error if there is no such row (the message lists names), or if there are several and
-/// `name` is empty.
+/// Returns the row named `name`, or the only row if `name` is empty. Throws Error if a row up to it is anything else.
+/// Throws Error if there is no such row (the message lists names), or if there are several and `name` is empty.
 NamedRow parse_named_row(const FileBytes& file, std::string_view name, const NamedRowKind& kind);
 
 }  // namespace burnish

@@ -31,9 +31,8 @@ std::shared_ptr<const NpDecoder> parse_np_decoder(const FileBytes& file);
 /// Throws Error as parse_named_row and NpBrdf do. Layout: [Zheng 2021].
 NpFile parse_np(const FileBytes& codes, std::string_view name, std::shared_ptr<const NpDecoder> decoder);
 
-/// Opens "PLACE#NAME", or "PLACE" if there is one code alone. PLACE is a file of codes, or a folder that
-/// holds it as codes.csv. The decoder lies beside it as decoder.f32. Throws Error as read_file and the
-/// parsers do.
+/// Opens "PLACE#NAME", or "PLACE" if there is one code alone. PLACE is a file of codes, or a folder that holds it as
+/// codes.csv. The decoder lies beside it as decoder.f32. Throws Error as read_file and the parsers do.
 NpFile open_np(std::string_view address);
 
 }  // namespace burnish

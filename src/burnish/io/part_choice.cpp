@@ -13,8 +13,7 @@ namespace burnish {
 
 namespace {
 
-/// Returns the rank of a band: the visible spectrum first, then a band without a name, then others in the
-/// file's order.
+/// Returns the rank of a band: the visible spectrum first, then a band without a name, then others in the file's order.
 int rank_of_band(std::string_view band) noexcept {
   return same_name(band, "Visible") ? 0 : same_name(band, "CIE-Y") ? 1 : band.empty() ? 2 : 3;
 }

@@ -24,8 +24,7 @@ std::size_t choose_block(const std::string& file, std::span<const BsdfBlock> blo
 /// another part or band.
 void check_block(const std::string& file, const Findings& findings, const OpenOptions& options);
 
-/// Notes the blocks of a file and the one that was read. A transmission that the options did not request is a
-/// warning.
+/// Notes the blocks of a file and the one that was read. A transmission that the options did not request is a warning.
 void note_blocks(std::span<const BsdfBlock> blocks, std::size_t chosen, const OpenOptions& options,
                  Findings& findings);
 

@@ -28,8 +28,7 @@ class Fields {
     return at == tensors_.end() ? nullptr : &*at;
   }
 
-  /// Returns a field of `type` with `rank` dimensions, none of them zero. Throws Error if it is missing or
-  /// differs.
+  /// Returns a field of `type` with `rank` dimensions, none of them zero. Throws Error if it is missing or differs.
   const Tensor& get(std::string_view name, TensorType type, std::size_t rank) const {
     const Tensor* tensor = find(name);
     if (!tensor) throw Error::in_file(file_.name, fmt::format("a field {}", name), "none");
@@ -76,8 +75,7 @@ class Fields {
   std::vector<Tensor> tensors_;
 };
 
-/// Turns [slices][channels][nodes] into [slices][nodes][channels]; with the two counts exchanged it turns
-/// them back.
+/// Turns [slices][channels][nodes] into [slices][nodes][channels]; with the two counts exchanged it turns them back.
 std::vector<float> transpose(const std::vector<float>& values, std::size_t channels, std::size_t nodes) {
   std::vector<float> result(values.size());
   for (std::size_t slice = 0; slice < values.size(); slice += channels * nodes)

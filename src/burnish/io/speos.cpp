@@ -157,8 +157,7 @@ Content read_preamble(TextReader& reader, const std::string& file, const OpenOpt
 /// other line. With `cosine`, sin(theta) cos(theta) takes the place of sin(theta). The integrals are exact, so that
 /// a coarse table of constant values integrates to its true share.
 std::pair<double, double> line_integrals(double a, double b, bool cosine) noexcept {
-  // sin(theta) cos(theta) is sin(2 theta) / 2. With u = w theta, the integrals are those of sin(u) and of u
-  // sin(u).
+  // sin(theta) cos(theta) is sin(2 theta) / 2. With u = w theta, the integrals are those of sin(u) and of u sin(u).
   const double w = cosine ? 2 : 1, ua = w * a, ub = w * b;
   const double whole = std::cos(ua) - std::cos(ub);
   const double first = (std::sin(ub) - ub * std::cos(ub)) - (std::sin(ua) - ua * std::cos(ua));
@@ -200,8 +199,7 @@ void scale(Block& block, double factor, const TextReader& reader) {
   }
 }
 
-/// Returns the first of the two nodes around x and the weight of the second. Values are constant beyond the
-/// ends.
+/// Returns the first of the two nodes around x and the weight of the second. Values are constant beyond the ends.
 std::pair<std::size_t, double> place_of(const std::vector<double>& nodes, double x) noexcept {
   if (nodes.size() == 1 || x <= nodes.front()) return {0, 0.0};
   const auto above =
@@ -300,8 +298,7 @@ Content read_anisotropic(TextReader& reader, const std::string& file, const Open
   return content;
 }
 
-/// Reads one block for each incidence and wavelength, each with its reflectance. Reflection comes before
-/// transmission.
+/// Reads one block for each incidence and wavelength, each with its reflectance. Reflection comes before transmission.
 Content read_brdf(TextReader& reader, const std::string& file, const OpenOptions& options) {
   Content content = read_preamble(reader, file, options, false);
   const std::size_t incidences = next_count(reader, "the number of incidences", kMaxAngles);

@@ -123,8 +123,7 @@ TEST(Speos, KeepsASingleWavelength) {
     }
 }
 
-// Each part has one incidence, one wavelength, two thetas and two phis. Thetas of transmission count from 90 to
-// 180.
+// Each part has one incidence, one wavelength, two thetas and two phis. Thetas of transmission count from 90 to 180.
 TEST(Speos, ReadsTransmissionOfABrdfMirroredThroughTheSurface) {
   const std::string text =
       "OPTIS - brdf surface file v8.0\n0\ncomment\n2\n-\n1\t1\n1\n1\t1\n30\n550\n"
@@ -181,8 +180,7 @@ TEST(Speos, SaysWhatIsWrong) {
               HasSubstr("reflectances that values below 1e+30 have"));
 }
 
-// In this file, blocks begin with a line of two counts, values contain the cosine, and phi = 0 is the mirror
-// direction.
+// In this file, blocks begin with a line of two counts, values contain the cosine, and phi = 0 is the mirror direction.
 TEST(Speos, ReadsASurfaceAsAFewLinesDo) {
   BURNISH_NEEDS_DATA();
   const FileBytes bytes = read_file(data_folder() / "speos" / "aniso_bsdf.anisotropicbsdf");

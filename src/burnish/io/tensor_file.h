@@ -36,8 +36,7 @@ bool looks_like_tensor_file(std::span<const std::byte> head) noexcept;
 /// into the header, beyond the end of the file or into other data.
 std::vector<Tensor> parse_tensor_file(const FileBytes& file);
 
-/// Returns the file that holds `tensors`, each aligned to 8 bytes. Domain: what parse_tensor_file accepts
-/// (asserted).
+/// Returns the file that holds `tensors`, each aligned to 8 bytes. Domain: what parse_tensor_file accepts (asserted).
 std::string format_tensor_file(std::span<const Tensor> tensors);
 
 }  // namespace burnish

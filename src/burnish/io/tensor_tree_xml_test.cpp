@@ -170,8 +170,7 @@ std::string_view braces_of(std::string_view text) {
   return text.substr(start, text.find("</Scatt", start) - start);
 }
 
-// The axes of rank 4 are the direction that the light travels to, then the viewer's. Rows of 16 cells are .06
-// wide.
+// The axes of rank 4 are the direction that the light travels to, then the viewer's. Rows of 16 cells are .06 wide.
 TEST(TensorTreeXml, WritesARankFourThatRadianceEvaluatesToItsSource) {
   const Source source = open_source("ggx:alpha_x=0.3,alpha_y=0.8,f0=0.4,kd=0.2", {});
   const std::string bytes = convert(source, "tensortree", {.cells = 16}).bytes;

@@ -10,8 +10,7 @@
 namespace burnish {
 
 /// Reads a text file line by line and its lines word by word; errors name the line. Blanks, tabs and commas separate
-/// words. A line ends at \n or \r\n, or at \r if the first line does. A UTF-8 byte order mark at the front is
-/// skipped.
+/// words. A line ends at \n or \r\n, or at \r if the first line does. A UTF-8 byte order mark at the front is skipped.
 class TextReader {
  public:
   explicit TextReader(const FileBytes& file) noexcept;

@@ -6,9 +6,8 @@
 
 namespace burnish {
 
-/// Converts a file in UTF-16 with a byte order mark at its front, as spreadsheets write it, to the same text in
-/// UTF-8 under the same name. Returns nothing for any other file, for half a surrogate pair and for a character
-/// 0.
+/// Converts a file in UTF-16 with a byte order mark at its front, as spreadsheets write it, to the same text in UTF-8
+/// under the same name. Returns nothing for any other file, for half a surrogate pair and for a character 0.
 std::optional<FileBytes> from_utf16(const FileBytes& file);
 
 }  // namespace burnish

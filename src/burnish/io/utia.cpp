@@ -41,8 +41,7 @@ double stored_at(std::span<const std::byte> bytes, std::size_t index) noexcept {
   return value;
 }
 
-/// Returns the place in the file of a table's entry. The table's axes are phi_i, theta_i, theta_o and phi_o -
-/// phi_i.
+/// Returns the place in the file of a table's entry. The table's axes are phi_i, theta_i, theta_o and phi_o - phi_i.
 std::size_t place_of(const AngleTable& table, std::size_t entry) noexcept {
   const auto [phi_i, theta_i, theta_o, turn] = node_of_entry(table, entry);
   return (theta_i * kPhis + phi_i) * kDirections + theta_o * kPhis + (phi_i + turn) % kPhis;

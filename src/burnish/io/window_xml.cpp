@@ -22,8 +22,7 @@ std::string_view direction_of(pugi::xml_node block) {
   return trimmed(block.child_value("WavelengthDataDirection"));
 }
 
-/// Returns the part that a file's WavelengthDataDirection names; nothing for other names, such as
-/// absorptances.
+/// Returns the part that a file's WavelengthDataDirection names; nothing for other names, such as absorptances.
 std::optional<BsdfPart> part_in_direction(std::string_view direction) noexcept {
   for (const BsdfPart part : kBsdfParts)
     if (same_name(direction, window_direction(part))) return part;

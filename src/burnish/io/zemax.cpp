@@ -146,8 +146,7 @@ std::vector<double> cell_borders(const std::vector<double>& nodes) {
   return borders;
 }
 
-/// Returns the part of the circle that each azimuth stands for, in radians; in a folded table it counts both
-/// sides.
+/// Returns the part of the circle that each azimuth stands for, in radians; in a folded table it counts both sides.
 std::vector<double> azimuth_widths(const AngleAxis& axis, bool folded) {
   if (axis.nodes.size() == 1) return {kTwoPi};
   const std::vector<double> borders = cell_borders(axis.nodes);

@@ -426,8 +426,7 @@ void write_pictures(const fs::path& folder, const std::string& reference_name, c
   const auto dome = [size](BrdfRef brdf) { return tone_map(render_dome(brdf, size), 1); };
   const Image reference_dome = dome(scorer.reference());
 
-  // The overview has the median model's scale, so that one bad model does not hide the differences of the
-  // other models.
+  // The overview has the median model's scale, so that one bad model does not hide the differences of the other models.
   std::vector<double> sorted = scales;
   std::ranges::sort(sorted);
   const double shared_scale = sorted[(sorted.size() - 1) / 2];

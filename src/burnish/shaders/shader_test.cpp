@@ -172,8 +172,7 @@ TEST(Shader, HasTwoTexturesAtMost) {
   }
 }
 
-// A filtered read between a table's outermost nodes meets texels of that table alone: its nodes, and its edge
-// again.
+// A filtered read between a table's outermost nodes meets texels of that table alone: its nodes, and its edge again.
 TEST(Shader, RepeatsTheEdgesOfTablesThatShareATexture) {
   const ModelCase model{"m",
                         "a(wo) b(h) a(wi) c(h) + d(theta_d) e(theta_h,theta_d) + f(h,d,phi_d) g(phi_d,h,d)",
@@ -404,8 +403,7 @@ TEST(ShaderPlaces, AreWrittenWhereTheyAreAskedFor) {
     EXPECT_THROW(text(ShaderLanguage::glsl, places), Error);
 }
 
-// The files of two materials are joined as a user joins them: a line for the compiler, one file, then the
-// other.
+// The files of two materials are joined as a user joins them: a line for the compiler, one file, then the other.
 TEST(ShaderPlaces, PutSeveralMaterialsIntoOneModule) {
   BURNISH_SKIP_WHERE_SANITIZED();
   int compiled = 0;

@@ -42,8 +42,7 @@ struct Glossy {
   }
 };
 
-/// Glossy times a factor of the directions in each channel, Factor::of(slope, channel, wi, wo) > 0. It is
-/// isotropic.
+/// Glossy times a factor of the directions in each channel, Factor::of(slope, channel, wi, wo) > 0. It is isotropic.
 template <class Factor>
 struct GlossyTimes {
   Glossy even;
@@ -58,8 +57,7 @@ struct GlossyTimes {
   }
 };
 
-/// 1 + slope cos theta_i in the first channel, 1 - slope cos theta_i / 2 in the other channels. It is not
-/// reciprocal.
+/// 1 + slope cos theta_i in the first channel, 1 - slope cos theta_i / 2 in the other channels. It is not reciprocal.
 struct OrderFactor {
   static constexpr double kSlope = 0.5;
   static double of(double slope, std::size_t c, Vec3 wi, Vec3) noexcept {
@@ -68,8 +66,7 @@ struct OrderFactor {
 };
 using Ordered = GlossyTimes<OrderFactor>;
 
-/// Brighter on one side of the plane of h and n than on the other. It is reciprocal, but not its own mirror
-/// image.
+/// Brighter on one side of the plane of h and n than on the other. It is reciprocal, but not its own mirror image.
 struct TwistFactor {
   static constexpr double kSlope = 1.5;
   static double of(double slope, std::size_t, Vec3 wi, Vec3 wo) noexcept {

@@ -51,8 +51,7 @@ static Counted cosf(Counted a) { return ++powers, cos(a.v); }
 #define float Counted
 )";
 
-/// A compiler of a language, the text that makes a program of a shader called {0}, and the command that runs
-/// it.
+/// A compiler of a language, the text that makes a program of a shader called {0}, and the command that runs it.
 struct Checked {
   ShaderLanguage language;
   const char *tool, *extension, *before, *main, *command;

@@ -24,8 +24,7 @@ struct TestContext {
   }
 };
 
-/// Returns a table's steepness: the largest ratio of neighbouring texels along an axis, less 1, summed over
-/// its axes.
+/// Returns a table's steepness: the largest ratio of neighbouring texels along an axis, less 1, summed over its axes.
 inline double steepness(const Table& table) {
   const std::size_t sizes[] = {static_cast<std::size_t>(table.layout.width),
                                static_cast<std::size_t>(table.layout.height),

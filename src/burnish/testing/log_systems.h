@@ -1,7 +1,6 @@
 #pragma once
 
-// Helpers of the tests of one-lobe solvers: log-linear problems, and the distance of a solution from the
-// minimum.
+// Helpers of the tests of one-lobe solvers: log-linear problems, and the distance of a solution from the minimum.
 
 #include <algorithm>
 #include <cmath>
@@ -105,14 +104,12 @@ inline const LogCase kLogCases[] = {{"p(wo) q(h) p(wi)", {"p=6", "q=9"}, 1},
                                     {"p(wo) q(h) p(wi)", {"p=6,shared", "q=9"}, 3},
                                     {"p(wo) q(h) p(wi) r(theta_d)", {"p=5x5", "q=9", "r=4,shared"}, 5}};
 
-/// Distance from the minimum at which a solver may end: its slope as a share of the slope at 0, and a share
-/// of the rms.
+/// Distance from the minimum at which a solver may end: its slope as a share of the slope at 0, and a share of the rms.
 struct LogTolerance {
   double slope, rms;
 };
 
-/// Expects that solve(rows) ends at the minimum of the objective in every case of kLogCases, and gives
-/// `reason`.
+/// Expects that solve(rows) ends at the minimum of the objective in every case of kLogCases, and gives `reason`.
 template <class Solve>
 void expect_least(std::size_t samples, const Solve& solve, double smooth, LogTolerance tolerance,
                   StopReason reason) {

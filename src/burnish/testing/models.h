@@ -117,8 +117,7 @@ FactoredBrdf model_of(const ModelCase& model, TableFormat format, Pcg32& random,
   return from_log_tables(model.channels, std::move(tables), std::move(lobes), format);
 }
 
-/// Returns a model with smooth tables, as fits have them: neighbours differ by 12 % at most for sides of 32
-/// or more.
+/// Returns a model with smooth tables, as fits have them: neighbours differ by 12 % at most for sides of 32 or more.
 inline FactoredBrdf smooth_model(const ModelCase& model, TableFormat format = TableFormat::single) {
   Pcg32 random(7);
   std::vector<double> phases;  // one phase for each table
@@ -156,8 +155,7 @@ inline const char* const kEverything =
 inline const std::vector<std::string> kEverySize{
     "p=8", "q=16x16,rational:0.2", "r=5,power:0.5,shared", "s=9x9", "t=4,shared", "u=6x7", "v=11", "x=7x5x3"};
 
-/// Returns all pairs of the corners: normal, grazing, borders of maps, wi == wo, the wrap of phi, below the
-/// horizon.
+/// Returns all pairs of the corners: normal, grazing, borders of maps, wi == wo, the wrap of phi, below the horizon.
 inline std::vector<DirectionPair> corner_pairs() {
   const Vec3 corners[] = {{0, 0, 1},         {1, 0, 1e-5}, {-1, 0, 1e-5},    {0, -1, 1e-3},   {1e-6, 0, 1},
                           {-1e-6, 1e-6, 1},  {1, 1, 1},    {1, 1, 0.999},    {-1, -1e-9, .5}, {-1, 1e-9, .5},

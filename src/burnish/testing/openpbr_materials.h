@@ -11,8 +11,7 @@
 
 namespace burnish {
 
-/// Draws parameters in the ranges of kOpenPbrInputs, each lobe absent, whole or in between. Floats hold the
-/// numbers.
+/// Draws parameters in the ranges of kOpenPbrInputs, each lobe absent, whole or in between. Floats hold the numbers.
 inline OpenPbrParameters draw_openpbr(Pcg32& random) {
   OpenPbrParameters p;
   const auto within = [&](double min, double max) {
@@ -30,8 +29,7 @@ inline OpenPbrParameters draw_openpbr(Pcg32& random) {
   return p;
 }
 
-/// Draws a light in any direction, or about the mirror direction of the viewer by slopes as wide as the
-/// roughness.
+/// Draws a light in any direction, or about the mirror direction of the viewer by slopes as wide as the roughness.
 inline DirectionPair draw_highlight_pair(Pcg32& random, double roughness) {
   for (;;) {
     const Vec3 wo = random_upper_direction(random);

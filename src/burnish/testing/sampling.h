@@ -16,9 +16,8 @@ namespace burnish {
 inline const Vec3 kViews[] = {
     {0, 0, 1}, spherical_direction(0.6, 1), spherical_direction(1.2, 4), spherical_direction(1.54, 2)};
 
-/// Returns the probability that a chi-square variable of `degrees` degrees of freedom exceeds x. It is the
-/// regularized upper incomplete gamma function Q(degrees / 2, x / 2), by its series or its continued
-/// fraction.
+/// Returns the probability that a chi-square variable of `degrees` degrees of freedom exceeds x. It is the regularized
+/// upper incomplete gamma function Q(degrees / 2, x / 2), by its series or its continued fraction.
 inline double chi_square_tail(double x, int degrees) noexcept {
   const double a = 0.5 * degrees, z = 0.5 * x, front = std::exp(a * std::log(z) - z - std::lgamma(a));
   if (z < a + 1) {
@@ -88,9 +87,8 @@ struct HalfVectorBins {
   }
 };
 
-/// Returns the p-value of Pearson's chi-square test of counts. Bins of fewer than five expected counts are
-/// joined. If the joined bins expect fewer than five too, they may hold no more than 25 counts; otherwise the
-/// p-value is 0.
+/// Returns the p-value of Pearson's chi-square test of counts. Bins of fewer than five expected counts are joined. If
+/// the joined bins expect fewer than five too, they may hold no more than 25 counts; otherwise the p-value is 0.
 inline double chi_square_p_value(std::span<const double> expected, std::span<const double> seen) noexcept {
   double statistic = 0, rest_expected = 0, rest_seen = 0;
   int bins = 0;
@@ -112,8 +110,7 @@ inline double chi_square_p_value(std::span<const double> expected, std::span<con
   return bins > 1 ? chi_square_tail(statistic, bins - 1) : 1;
 }
 
-/// Draws `draws` directions for wo. Compares the count in each of HalfVectorBins with the integral of pdf over
-/// the bin.
+/// Draws `draws` directions for wo. Compares the count in each of HalfVectorBins with the integral of pdf over the bin.
 inline DrawTest test_draws(SamplerRef sampler, Vec3 wo, int draws, std::uint64_t seed) {
   const HalfVectorBins bins{wo};
   std::vector<double> expected = bins.integrals(sampler);

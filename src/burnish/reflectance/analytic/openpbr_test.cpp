@@ -43,8 +43,7 @@ TEST(OpenPbr, LosesNoLightBetweenRoughFacets) {
   for (const double roughness : {0.3, 0.6, 0.9}) {
     const OpenPbrParameters white{.base_color = 1, .base_metalness = 1, .specular_roughness = roughness};
     const OpenPbr metal(white);
-    // The bound allows for the fit of the albedo, within 2 % by its source, and for the integral of the
-    // albedo.
+    // The bound allows for the fit of the albedo, within 2 % by its source, and for the integral of the albedo.
     EXPECT_NEAR((albedo<128, 192>)(metal, normalize({0.3, 0.2, 0.8})), 1, 0.05) << roughness;
   }
 }
