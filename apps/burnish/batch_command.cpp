@@ -50,7 +50,7 @@ BatchOptions batch_options(const BatchArguments& arguments) {
   return options;
 }
 
-// One line on standard error, redrawn in place; nothing where that is no terminal.
+// A line of progress on standard error, redrawn in place. It prints nothing where standard error is no terminal.
 class Redrawn {
  public:
   explicit Redrawn(const Batch& batch) : batch_(batch) {}
@@ -68,7 +68,7 @@ class Redrawn {
     if (done == summary.total) fmt::print(stderr, "\r\033[K");
     std::fflush(stderr);
   }
-  /// While a fit takes long: once a second.
+  /// Draws again if a second has passed since the last time; call it often while a fit takes long.
   void draw_if_due() {
     if (std::chrono::steady_clock::now() - drawn_ >= std::chrono::seconds(1)) draw();
   }
@@ -98,7 +98,7 @@ void print_json(const BatchArguments& arguments, const BatchSummary& summary,
   print_as_json(json);
 }
 
-// "README.txt, list.pdf and 3 more", as they are called in the folder.
+// Names the first four files without their folder, and counts the others: "README.txt, list.pdf and 3 more".
 std::string few_of(const std::vector<std::string>& paths) {
   constexpr std::size_t kMost = 4;
   std::string text;
@@ -122,7 +122,7 @@ void print_text(const BatchArguments& arguments, const BatchSummary& summary,
 }
 
 void write_script(const BatchArguments& arguments, const CLI::App& verb) {
-  // what is wrong with it is said now
+  // Errors of the library's folder or list are thrown now, not by the tasks.
   const std::size_t materials = library_entries(arguments.place, {arguments.out}).size();
   std::vector<std::string> words = command_words(verb);
   if (!arguments.batch.resume) words.insert(words.begin() + 2, "--resume");
@@ -144,7 +144,7 @@ void run(const BatchArguments& arguments, const CLI::App& verb) {
   check_folder_name(arguments.out);
   const BatchOptions options = batch_options(arguments);
   for (const bool isotropic : {false, true})
-    options.fit(isotropic);  // contradictions are misuses, before all else
+    options.fit(isotropic);  // contradicting options are misuses, thrown before all other errors
   if (arguments.slurm.wanted) return write_script(arguments, verb);
   std::vector<std::string> skipped;
   Batch batch(library_entries(arguments.place, {arguments.out}, &skipped), options);

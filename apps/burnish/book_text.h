@@ -8,14 +8,14 @@
 
 namespace burnish::cli {
 
-/// How much is in a book, in a line.
+/// Describes the size of a book in a line: materials, bytes of each, bytes that they share.
 std::string book_line(const MaterialBook& book);
 
-/// What `burnish info --json` says of a book: format, shared_bytes, bytes_a_material, nodes, components of each axis of
-/// colour, residuals of these, and the materials' names.
+/// Returns the JSON of `burnish info --json` for a book: format, shared_bytes, bytes_a_material, nodes, and the
+/// materials' names. Two members have one value for each axis of colour: components, their number, and residuals.
 nlohmann::ordered_json book_json(const MaterialBook& book);
 
-/// Prints what `burnish info` says of a book.
+/// Prints the report of `burnish info` on a book.
 void print_book(const std::string& name, const MaterialBook& book);
 
 }  // namespace burnish::cli

@@ -11,15 +11,15 @@ namespace {
 
 /// An option or a positional argument.
 struct Argument {
-  std::vector<std::string> names;    ///< with their dashes; of a positional one its name
-  std::string value;                 ///< what it takes ("TEXT"); empty: a flag
-  std::vector<std::string> choices;  ///< the values that it takes where these are few
+  std::vector<std::string> names;    ///< with their dashes; the name alone of a positional argument
+  std::string value;                 ///< the kind of its value ("TEXT"); empty: a flag
+  std::vector<std::string> choices;  ///< the values that it takes, where these are few
   std::string description;
-  std::string standard;  ///< its default, or nothing
+  std::string standard;  ///< its default, or empty
   bool positional = false;
 };
 
-/// A verb, "fit" or "specular code"; the program itself has no name.
+/// A verb, "fit" or "specular code". The program itself has an empty name.
 struct Verb {
   std::string name;
   std::string description;
@@ -52,7 +52,7 @@ Argument argument_of(const CLI::Option& option) {
   for (const std::string& name : option.get_lnames()) argument.names.push_back("--" + name);
   if (argument.positional) argument.names = {option.get_name(true)};
   if (option.get_items_expected_max() == 0) return argument;
-  // CLI11 says a type and what is asked of it: "TEXT:{image,relative}", "INT:INT in [1 - 64]".
+  // CLI11's type name holds the type and its constraint: "TEXT:{image,relative}", "INT:INT in [1 - 64]".
   const std::string type = option.get_type_name();
   argument.value = type.substr(0, type.find(':'));
   const std::size_t open = type.find(":{");
@@ -76,7 +76,7 @@ Verb verb_of(const CLI::App& app, const std::string& name) {
 
 // --- manual pages
 
-/// Text as roff prints it.
+/// Escapes a text so that roff prints it unchanged.
 std::string roff(const std::string& text) {
   std::string escaped = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   if (!escaped.empty() && (escaped.front() == '.' || escaped.front() == '\'')) escaped.insert(0, "\\&");
@@ -95,7 +95,7 @@ std::string roff(const Argument& argument) {
   return fmt::format(".TP\n{}\n{}\n", names, roff(argument.description + standard));
 }
 
-/// What stands below a heading of a verb: how it is called, its arguments, its examples, the verbs below it.
+/// Returns the text below a verb's heading: its synopsis, its arguments, the verbs below it, its examples.
 std::string body(const Verb& verb, std::string_view heading) {
   std::string synopsis = fmt::format("\\fBburnish {}\\fR [\\fIoptions\\fR]", roff(verb.name));
   for (const Argument& argument : verb.arguments)
@@ -104,7 +104,7 @@ std::string body(const Verb& verb, std::string_view heading) {
   std::string text = fmt::format(".{} SYNOPSIS\n{}\n.{} OPTIONS\n", heading, synopsis, heading);
   for (const Argument& argument : verb.arguments) text += roff(argument);
   for (const Verb& below : verb.verbs) {
-    if (verb.name.empty()) break;  // each has a page of its own
+    if (verb.name.empty()) break;  // each verb has a page of its own
     text += fmt::format(".SH {}\n{}.\n", roff("burnish " + below.name), roff(below.description));
     text += body(below, "SS");
   }
@@ -133,7 +133,7 @@ ManualPage page(const Verb& verb, std::string_view version, const std::string& s
 
 // --- completions
 
-/// Words that may follow a verb's name: its verbs and its options.
+/// Returns the words that may follow a verb's name: its verbs and its options.
 std::string words(const Verb& verb) {
   std::vector<std::string> all;
   const std::size_t levels = verb.name.empty() ? 0 : split(verb.name, ' ').size();
@@ -143,7 +143,7 @@ std::string words(const Verb& verb) {
   return fmt::format("{}", fmt::join(all, " "));
 }
 
-/// "--loss" or "-o|--output", which serve as patterns of `case`.
+/// Returns the names as a pattern of `case`: "--loss" or "-o|--output".
 std::string pattern(const Argument& argument) {
   return fmt::format("{}", fmt::join(argument.names, "|"));
 }
@@ -162,7 +162,7 @@ std::string bash_cases(const Verb& verb) {
   return text;
 }
 
-/// Names of verbs that have verbs below them, as patterns of `case`.
+/// Returns the names of verbs that have verbs below them, as patterns of `case`.
 std::string branching(const Verb& verb) {
   std::string names = fmt::format("'{}'", verb.name);
   for (const Verb& below : verb.verbs)
@@ -170,7 +170,7 @@ std::string branching(const Verb& verb) {
   return names;
 }
 
-/// A text within the single quotes and the brackets of an argument of _arguments.
+/// Escapes a text for the single quotes and the brackets of an argument of _arguments.
 std::string zsh(std::string text) {
   for (const auto& [what, with] :
        {std::pair{"\\", "\\\\"}, {"'", "'\\''"}, {"[", "\\["}, {"]", "\\]"}, {":", "\\:"}})
@@ -189,7 +189,7 @@ std::string zsh_argument(const Argument& argument) {
   return text;
 }
 
-/// A function of the verb that completes what follows its name, and those of the verbs below it.
+/// Returns a zsh function that completes the words after the verb's name, and the functions of the verbs below it.
 std::string zsh_functions(const Verb& verb) {
   const auto function = [](const Verb& each) {
     return "_burnish" + (each.name.empty() ? "" : "_" + replaced(each.name, " ", "_"));

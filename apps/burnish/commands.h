@@ -18,7 +18,7 @@ void add_describe_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
-/// `crew`: the ranks that fit together, or null.
+/// `crew` holds the ranks that fit together, or is null.
 void add_fit_surface_command(CLI::App& app, FitCrew* crew = nullptr);
 void add_help_command(CLI::App& app);
 void add_hw_command(CLI::App& app);
@@ -27,7 +27,7 @@ void add_measure_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_specular_command(CLI::App& app);
 
-/// What --version prints, as lines or as JSON: versions, instruction sets, threads.
+/// Returns the text of --version, as lines or as JSON: versions, instruction sets, threads.
 std::string version_text(bool as_json);
 
 }  // namespace burnish::cli

@@ -27,7 +27,7 @@ struct CompareArguments {
   bool no_symmetrize = false, json = false;
 };
 
-// One line for the reference and each model, means over the channels.
+// Prints a line for the reference and one for each model: albedos, averaged over the channels.
 void print_albedos(std::span<const ComparedFigures> figures) {
   const auto row = [&](const std::string& name, const ComparedFigures& c, const auto& number) {
     fmt::print("{:<32}", name);
@@ -47,7 +47,7 @@ void print_albedos(std::span<const ComparedFigures> figures) {
     row("  " + c.name, c, [&](const ComparedAlbedo& at) { return mean(at.model); });
 }
 
-// What another measurement of the same surface scores.
+// Prints the scores of a second measurement of the same surface, or their estimate.
 void print_quality(const MeasurementQuality& quality) {
   const ErrorFigures& f = quality.figures;
   fmt::print("{:<32} {:>8} {:>8.2f} {:>8.2f} {:>7.4f} {:>9.4f} {:>8.4f} {:>8.4f}\n",
@@ -58,7 +58,7 @@ void print_quality(const MeasurementQuality& quality) {
 void add_quality(Measurement& measurement, const Candidate& reference, const Scorer& scorer,
                  const CompareArguments& arguments) {
   if (arguments.repeat.empty()) {
-    if (reference.source().findings.transmits()) return;  // exchanged, the light comes from the other side
+    if (reference.source().findings.transmits()) return;  // light would come from the other side
     measurement.quality = quality_by_exchange(scorer, reference.source().ref(), measurement.nodes);
     return;
   }
@@ -67,7 +67,7 @@ void add_quality(Measurement& measurement, const Candidate& reference, const Sco
   measurement.quality = quality_by_repeat(scorer, second.ref(), measurement.nodes);
 }
 
-// Nothing else is found out.
+// Computes the figures at the nodes alone.
 std::vector<ComparedFigures> at_nodes(const Measurement& measurement, std::span<const ComparedModel> models) {
   std::vector<ComparedFigures> figures;
   for (const ComparedModel& model : models)
@@ -80,7 +80,7 @@ std::vector<ComparedFigures> at_nodes(const Measurement& measurement, std::span<
   return figures;
 }
 
-// Figures at the nodes; models have some.
+// Prints the figures at the nodes. Each model must have them.
 void print_nodes(const Measurement& measurement, std::span<const ComparedFigures> models) {
   fmt::print("{:<32} {:>8} {:>9} {:>8} {:>8} {:>9}\n", "at the measured nodes", "bytes", "relative",
              "rms_log", "log_cos", "rms 1/sr");
@@ -93,7 +93,7 @@ void print_nodes(const Measurement& measurement, std::span<const ComparedFigures
   fmt::print("{} nodes with both cosines above 0.15\n", measurement.itself.count);
 }
 
-// How far off models may be between samples, and the function between these itself.
+// Prints the expected errors between samples: those of the models, and those of the function between the samples.
 void print_expected(const Measurement& measurement, std::span<const ComparedFigures> models) {
   if (!measurement.expected) return;
   fmt::print("{:<32} {:>9}", "expected, measured or not", "relative");
@@ -130,7 +130,7 @@ void print_compared(std::span<const ComparedFigures> figures, const Measurement*
                100 * first.unknown_fraction, first.unknown_pixels);
 }
 
-// Reflection is not compared with transmission, but formulas with both.
+// Throws Error where one is reflection and the other transmission. Formulas are compared with both.
 void check_same_kind(const Source& reference, const Source& model) {
   const auto kind = [](const Source& source) {
     return source.findings.transmits() ? "transmission" : "reflection";
@@ -148,7 +148,7 @@ void compare(const CompareArguments& arguments) {
   }
   const Source opened = arguments.reference.open();
   const Candidate reference(opened, !arguments.no_symmetrize);
-  // lists: models refer to their candidates, these to their sources
+  // The containers are lists, since models refer to their candidates and candidates to their sources.
   std::list<Source> sources;
   std::list<Candidate> candidates;
   std::vector<ComparedModel> models;
@@ -161,7 +161,7 @@ void compare(const CompareArguments& arguments) {
   std::optional<Measurement> measurement =
       measurement_of(reference, arguments.target == "nodes", arguments.only);
   if (arguments.target == "nodes" && arguments.folder.empty()) {
-    // no picture is drawn
+    // Figures at the nodes need no picture.
     if (arguments.json)
       fmt::print("{}\n", nodes_json(*measurement, models));
     else

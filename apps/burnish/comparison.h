@@ -8,8 +8,8 @@
 
 namespace burnish::cli {
 
-/// An opened BRDF, made reciprocal like the others unless it is so by construction or transmits. Refers to the source,
-/// which must outlive it.
+/// An opened BRDF, made reciprocal if `symmetrize` is set. It stays as it is where it transmits or is reciprocal by
+/// construction. Refers to the source, which must outlive it.
 class Candidate {
  public:
   Candidate(const Source& source, bool symmetrize);
@@ -17,9 +17,9 @@ class Candidate {
 
   BrdfRef ref() const;
   const Source& source() const { return source_; }
-  /// Nothing where the source is none.
+  /// Returns the factored model, or null where the source is none.
   const FactoredBrdf* model() const { return std::get_if<FactoredBrdf>(&source_.brdf); }
-  /// What is scored, under that name; refers to this object.
+  /// Returns the model to score, under that name; it refers to this object.
   ComparedModel compared(const std::string& name) const;
 
  private:
@@ -27,8 +27,8 @@ class Candidate {
   std::optional<SymmetrizedBrdf> symmetrized_;
 };
 
-/// What is known of a reference that is a measurement, of part of its nodes if `only` says which (parse_node_part);
-/// nothing of a formula or model unless nodes are asked for, which then throws Error.
+/// Returns the measurement behind a reference, or nothing for a formula or model. `only` chooses a part of its nodes
+/// (parse_node_part). Throws Error where `nodes_asked` and the reference is no measurement.
 std::optional<Measurement> measurement_of(const Candidate& reference, bool nodes_asked,
                                           const std::string& only);
 

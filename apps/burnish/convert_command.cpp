@@ -31,7 +31,7 @@ struct ConvertArguments {
   bool json = false;
 };
 
-/// The formats that an option says something of; first those that have a table's entries without it.
+/// Lists the formats that an option applies to. Formats that keep a table's entries without it come first.
 std::string formats_with(bool Format::*option, std::string_view last_by = "or") {
   std::vector<std::string_view> names;
   for (const bool entries_first : {true, false})
@@ -41,7 +41,7 @@ std::string formats_with(bool Format::*option, std::string_view last_by = "or") 
   return listed(names, last_by);
 }
 
-/// The format asked for, or the one that the output's name ends in.
+/// Returns the format of --to, or the one that the output's name ends in.
 const Format& target_format(const ConvertArguments& arguments) {
   const Format* const format =
       arguments.to.empty() ? format_ending_in(std::filesystem::path(arguments.out).extension().string())
@@ -51,7 +51,7 @@ const Format& target_format(const ConvertArguments& arguments) {
       arguments.out, fmt::format("expected a name that ends in {}, or --to", listed(naming_endings())));
 }
 
-/// Which options were given, since each speaks of some formats alone.
+/// The options that were given. Each of them applies to some formats alone.
 struct GivenOptions {
   bool cells = false, count = false, entries = false, notes = false;
 };
@@ -61,7 +61,7 @@ GivenOptions given_options(const CLI::App& verb) {
   return {given("--cells"), given("--count"), given("--entries"), given("--notes")};
 }
 
-/// Refuses options that say nothing of the format.
+/// Refuses options that do not apply to the format.
 void check_options(const GivenOptions& given, const Format& format) {
   const auto refuse = [&](bool wanted, const char* option, const std::string& formats) {
     if (wanted)
@@ -74,7 +74,7 @@ void check_options(const GivenOptions& given, const Format& format) {
   refuse(given.notes && !format.takes_notes, "--notes", "a .burnish file");
 }
 
-/// The same of options that say nothing of the source.
+/// Refuses options that do not apply to the source.
 void check_source(const GivenOptions& given, const Source& source) {
   if (given.count && source.samples())
     throw CLI::ValidationError(
@@ -82,7 +82,7 @@ void check_source(const GivenOptions& given, const Source& source) {
                     counted(source.samples()->size(), "sample")));
 }
 
-/// What the new file says less than the old one, what it says otherwise, and what speaks against it, a line each.
+/// Prints losses, notes on changed meaning, and warnings on standard error, a line each.
 void print_said(const std::string& out, const Converted& converted) {
   const std::string name = std::filesystem::path(out).filename().string();
   if (!converted.losses.empty())
@@ -92,7 +92,7 @@ void print_said(const std::string& out, const Converted& converted) {
     fmt::print(stderr, "burnish: {}: warning: {}\n", name, warning);
 }
 
-/// A surface's other file. False where the input is none.
+/// Writes a surface in its other format. Returns false where the input is no surface.
 bool converts_surface(const ConvertArguments& arguments, std::string_view format) {
   const std::string& spec = arguments.source.spec;
   if (std::error_code none; is_analytic_spec(spec) || !std::filesystem::is_regular_file(spec, none))
@@ -125,11 +125,11 @@ void run_convert(const ConvertArguments& given_arguments, const GivenOptions& gi
   if (converts_surface(arguments, format->to)) return;
   const Source source = arguments.source.open();
   check_source(given, source);
-  // slices of a model are asked for by name
+  // A model is written as slices only if --to names them.
   const bool is_model = std::holds_alternative<FactoredBrdf>(source.brdf);
   if (is_model && format->to == "exr" && arguments.to.empty()) format = format_to("model");
   check_options(given, *format);
-  // what was measured, unless draws are asked for
+  // Entries of a measured table are kept, unless --count asks for draws.
   if (!given.count && format->entries_first && has_entries(source)) arguments.options.entries = true;
   const Converted converted = [&] {
     const Progress progress("converting");

@@ -8,7 +8,7 @@
 
 namespace burnish::cli {
 
-/// "1 picture", "2 pictures".
+/// Returns a count with its noun: "1 picture", "2 pictures".
 inline std::string counted(std::size_t count, std::string_view one) {
   return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
 }

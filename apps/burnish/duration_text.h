@@ -7,7 +7,7 @@
 
 namespace burnish::cli {
 
-/// "45 s", "12 min", "3 h 20 min", rounded up.
+/// Returns a duration, rounded up: "45 s", "12 min", "3 h 20 min".
 inline std::string duration_text(double seconds) {
   const auto s = static_cast<long>(std::ceil(seconds));
   if (s < 100) return fmt::format("{} s", s);

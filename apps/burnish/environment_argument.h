@@ -12,7 +12,8 @@ namespace burnish::cli {
 /// Adds `--environment`. `text` must outlive the parse.
 void add_environment_argument(CLI::App& verb, std::string& text);
 
-/// A name or a picture; nothing where none is asked for. Throws Error for a file that is no picture of a sky.
+/// Opens an environment by its name or its picture; returns nothing for an empty text. Throws Error for a file that is
+/// no picture of a sky.
 std::optional<Environment> environment_of(const std::string& text);
 
 }  // namespace burnish::cli

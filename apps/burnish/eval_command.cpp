@@ -35,7 +35,7 @@ std::vector<std::string> value_names(std::size_t channels, const std::vector<dou
   return names;
 }
 
-/// What knows how far a measurement's values may be off: the function of scattered samples, or one made for this.
+/// The function that predicts the error of a measurement's values: that of scattered samples, or one made here.
 struct Uncertain {
   const KrigedNodes* function = nullptr;
   std::unique_ptr<const KrigedNodes> own;
@@ -55,7 +55,7 @@ Uncertain uncertain_of(const Source& source) {
   }
 }
 
-/// The directions' file, or the standard input where its name is "-".
+/// Reads the file of directions, or the standard input where its name is "-".
 FileBytes read_directions(const std::string& name) {
   if (name != "-") return read_file(name);
   constexpr std::size_t kMost = std::size_t{1} << 30;
@@ -70,7 +70,7 @@ FileBytes read_directions(const std::string& name) {
   return file;
 }
 
-/// Values at pairs; what the BRDF does not know is not known.
+/// Values at pairs. `known` is 0 where the BRDF has no value.
 struct Values {
   std::size_t channels = 0;
   std::vector<double> f;            // [pair][channel]
@@ -78,8 +78,8 @@ struct Values {
   std::vector<double> errors;       // [pair], or nothing
 };
 
-/// The pairs as the source takes them. Transmission leaves below the surface: its wo has z < 0 in what users write, and
-/// is mirrored through the surface in what is evaluated. wo of a transmission above the surface is below it then.
+/// Returns the pairs in the source's convention. Transmission leaves below the surface: users write its wo with z < 0.
+/// The source expects wo mirrored through the surface, with z > 0. A user's wo above the surface therefore gets z < 0.
 std::vector<DirectionPair> as_evaluated(const Source& source, std::vector<DirectionPair> pairs) {
   if (source.findings.transmits())
     for (DirectionPair& pair : pairs) pair.wo.z = -pair.wo.z;
@@ -106,7 +106,7 @@ Values values_at(const Source& source, std::span<const DirectionPair> pairs, boo
   return values;
 }
 
-/// `directions`: those that stand beside the values.
+/// Names the columns of the output. `directions` are those that stand beside the values.
 std::vector<std::string> columns_of(const Source& source, const DirectionTable& directions,
                                     bool with_errors) {
   std::vector<std::string> names = directions.names;
@@ -116,7 +116,7 @@ std::vector<std::string> columns_of(const Source& source, const DirectionTable& 
   return names;
 }
 
-/// A name as CSV has it.
+/// Quotes a name where CSV needs it.
 std::string as_cell(const std::string& name) {
   if (name.find_first_of(",\"") == std::string::npos) return name;
   std::string quoted = "\"";

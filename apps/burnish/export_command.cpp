@@ -123,7 +123,7 @@ ExportedFiles exported_files(const ExportArguments& arguments) {
   return analytic ? exported_analytic(arguments, *analytic) : exported_model(arguments, source);
 }
 
-// Each number needs a target that has it, and textures that have places.
+// Checks each number: it needs a target that takes it, and some need textures with places.
 void check_numbers(const ExportArguments& arguments) {
   const ExportOptions options = options_of(arguments);
   const auto check = [&](const char* option, const std::optional<int>& number,

@@ -20,8 +20,8 @@ std::string word_of(const FitOption& option) {
   return spelled(option, FitFront::command_line);
 }
 
-// The row's sentence, and in parentheses what it needs and its default where these are short: the guide's page
-// (docs/guide/fit-options.md) has them all, and what excludes what.
+// Returns the sentence of the option's row. In parentheses follow the option that it needs and its default, where these
+// are short. The guide's page (docs/guide/fit-options.md) has them all, and the exclusions.
 std::string description(const FitOption& option) {
   constexpr std::ptrdiff_t kMostWords = 25;
   std::string text(option.help), more;
@@ -36,7 +36,8 @@ std::string description(const FitOption& option) {
   return fmt::format("{} ({}).", text, more);
 }
 
-// As CLI11 names types, which completions and manual pages read: "TEXT:{image,relative}", "NUMBER:from 1 to 64".
+// Returns a type name in CLI11's form, which completions and manual pages read: "TEXT:{image,relative}", "NUMBER:from 1
+// to 64".
 std::string type_name(const FitOption& option) {
   if (option.name == "method") return fmt::format("TEXT:{{{}}}", fmt::join(baseline_methods(), ","));
   switch (option.takes) {

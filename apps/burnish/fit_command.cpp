@@ -86,7 +86,7 @@ void print(const CompletionReport& report) {
              report.relative_left_out);
 }
 
-// One line: how many bytes, and why.
+// Prints a line: the number of bytes, and the reason for it.
 void print(const BudgetChoice& choice) {
   const auto last = [&] { return choice.trials.back(); };
   const std::string why = [&] {
@@ -191,7 +191,7 @@ void print_figures(std::string_view name, const ErrorFigures& e, const std::stri
     fmt::print("{:<10} the same pictures, relative {:.4f}{}\n", name, e.relative, size);
 }
 
-// Inputs that are not at their defaults, those of a layer in a line.
+// Prints the inputs that differ from their defaults, a line for each layer.
 void print(const OpenPbr& material) {
   const OpenPbrParameters p = material.parameters(), defaults;
   for (const std::string_view layer : {"base", "specular", "coat", "fuzz", "thin_film", "geometry"}) {
@@ -233,7 +233,8 @@ void print(const GltfMaterial& m) {
     fmt::print("clearcoat  {:.4g}, roughness {:.4g}\n", m.clearcoat, m.clearcoat_roughness);
 }
 
-// What the material leaves out, a line each; nothing that is too small to be seen or not known.
+// Prints the effects that the material cannot express, a line each. Effects too small to be seen, or not known, are
+// left out.
 void print(const Unexplained& beyond) {
   constexpr double kSeenFactor = 1.25, kSeenShift = 0.05;
   if (const double back = beyond.backscatter.value_or(1); back > kSeenFactor || back < 1 / kSeenFactor)
@@ -248,7 +249,7 @@ void print(const Unexplained& beyond) {
                grain);
 }
 
-// That what is written as JSON is not named as another file.
+// Refuses an output name that ends otherwise than .json, since JSON is written.
 void check_name_of_json(const FitCommand& arguments) {
   const std::string ending = std::filesystem::path(arguments.out).extension().string();
   if (ending.empty() || ending == ".json") return;
@@ -315,7 +316,7 @@ void fit(const FitCommand& arguments) {
   write_then_rename(arguments.out, bytes);
 
   const auto* model = std::get_if<FactoredBrdf>(&fit.brdf);
-  // baselines are compared by what their fits alone take
+  // Times of baselines are those of their fits alone.
   const double seconds = model
                              ? std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()
                              : fit.report.seconds;
@@ -331,7 +332,7 @@ void fit(const FitCommand& arguments) {
   fmt::print("written    {}, a file of {} bytes, in {:.2f} s\n", arguments.out, bytes.size(), seconds);
 }
 
-// A renderer's material instead of factors.
+// Adds the options for fitting a renderer's material instead of factors.
 void add_material_arguments(CLI::App& verb, FitCommand& arguments) {
   const auto targets = material_targets();
   CLI::Option* const to = verb.add_option(

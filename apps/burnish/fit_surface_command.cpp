@@ -62,7 +62,7 @@ std::string text_of(const PictureScore& score, const SurfaceReport& report) {
                          : "");
 }
 
-// Of the first picture that was held out, or the first.
+// Writes the comparison of the first picture that was held out, or of the first picture where none was.
 void write_comparison(const FitSurfaceArguments& arguments, const SurfaceFit& fit) {
   Capture capture(arguments.capture, arguments.pictures);
   const auto& pictures = capture.form().pictures;
@@ -71,7 +71,7 @@ void write_comparison(const FitSurfaceArguments& arguments, const SurfaceFit& fi
   write_png(arguments.picture, surface_picture(capture, fit.surface.brdf, number, fit.report.exposure));
 }
 
-// What others reach, if asked for.
+// Returns the scores of the baselines if they are asked for.
 std::vector<BaselineScore> scores_of_others(const FitSurfaceArguments& arguments, const SurfaceFit& fit,
                                             const SurfaceFitOptions& options) {
   if (!arguments.compare) return {};
@@ -135,7 +135,7 @@ SurfaceFitOptions surface_options(const FitSurfaceArguments& arguments) {
   return options;
 }
 
-// That no name says that another file is written.
+// Refuses output names that end as files of another format do, or that are equal.
 void check_names(const FitSurfaceArguments& arguments) {
   const auto check = [](const char* option, const fs::path& path, std::initializer_list<const char*> endings,
                         const char* such) {
@@ -155,7 +155,7 @@ void check_names(const FitSurfaceArguments& arguments) {
         fmt::format("--picture: expected another file than --output, found '{}'", arguments.picture));
 }
 
-// That nothing is written over what is read.
+// Throws Error where an output would overwrite an input.
 void check_inputs_stay(const FitSurfaceArguments& arguments, const Capture& capture) {
   std::vector<fs::path> read{capture.form_file()};
   if (fs::is_directory(arguments.capture)) {

@@ -70,7 +70,7 @@ void print_models() {
   }
 }
 
-/// The verb of these names, each below the one before; throws a misuse where there is none.
+/// Returns the verb of these names, each name below the one before. An unknown name is a misuse.
 const CLI::App& verb_of_names(const CLI::App& app, const std::vector<std::string>& names) {
   const CLI::App* verb = &app;
   if (names.size() > 1 && (names.front() == "formats" || names.front() == "models"))
@@ -79,7 +79,7 @@ const CLI::App& verb_of_names(const CLI::App& app, const std::vector<std::string
   for (const std::string& name : names) {
     std::vector<std::string> known;
     for (const CLI::App* each : verb->get_subcommands([](const CLI::App*) { return true; }))
-      if (!each->get_name().empty()) known.push_back(each->get_name());  // the others are groups of options
+      if (!each->get_name().empty()) known.push_back(each->get_name());  // without a name: a group of options
     if (known.empty())
       throw CLI::ValidationError("help",
                                  fmt::format("expected nothing after {}, which has no verbs below it, "
@@ -142,7 +142,7 @@ void add_help_command(CLI::App& app) {
       return arguments->json ? print_as_json(models_json()) : print_models();
     const CLI::App& topic = verb_of_names(app, arguments->topic);
     if (arguments->json) return print_as_json(description_json(topic));
-    // not app.help(): where a verb was chosen, as this one was, it says what that does
+    // app.help() does not serve: where a verb was chosen, as here, it prints the help of that verb.
     std::string path = "burnish";
     for (const std::string& name : arguments->topic) path += " " + name;
     fmt::print("{}", topic.get_formatter()->make_help(&topic, path, CLI::AppFormatMode::Normal));

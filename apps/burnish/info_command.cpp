@@ -78,7 +78,7 @@ void print_findings(const Source& source, const std::vector<std::string>& warnin
                                         findings.most_negative));
 }
 
-// Four digits, or two where those would hide it.
+// Formats values with four digits after the point, or with two significant digits where a value is below 0.001.
 std::vector<std::string> shown(const std::vector<double>& values) {
   std::vector<std::string> texts;
   for (const double x : values)
@@ -136,7 +136,7 @@ void print_text(const SourceReport& report, const std::optional<NodesKnown>& nod
     for (const auto& [word, says] : notes_lines(source.findings.notes)) print_line(word, says);
 }
 
-// The book that a file is.
+// Returns the book that a file holds, or nothing where it is no book.
 std::optional<MaterialBook> book_of(const std::string& spec) {
   std::ifstream file(spec, std::ios::binary);
   std::array<char, 32> head{};
@@ -189,7 +189,7 @@ void add_info_command(CLI::App& app) {
     }
     const Source source = [&] {
       const Progress progress("reading " + arguments->spec);
-      return open_source(arguments->spec, arguments->options);  // warnings stand in the report
+      return open_source(arguments->spec, arguments->options);  // warnings are part of the report
     }();
     if (*target == "nodes") {
       const NodesInfo nodes = nodes_info(source);

@@ -10,7 +10,7 @@ namespace burnish::cli {
 namespace {
 
 constexpr std::size_t kFewIncidences = 100;
-constexpr std::size_t kManyNodes = 20'000;  // more take their time to be predicted
+constexpr std::size_t kManyNodes = 20'000;  // predicting more nodes takes too long
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::optional<NodesKnown> nodes_of(const Source& source) {
   if (source.ref().isotropic() && count <= kManyNodes) {
     try {
       known.predicted = held_out_figures(measured_nodes(source), LogCovariance(true));
-    } catch (const Error&) {  // too few, or all of them near grazing: nothing to predict
+    } catch (const Error&) {  // too few nodes, or all of them near grazing: no prediction
     }
   }
   return known;

@@ -9,18 +9,18 @@
 
 namespace burnish::cli {
 
-/// What is known of the places that were measured.
+/// The measured nodes of a source.
 struct NodesKnown {
   std::size_t count;
-  std::optional<std::size_t> incidences;  ///< where they are few
+  std::optional<std::size_t> incidences;  ///< their number, where they are few
   std::optional<NodeFigures>
-      predicted;  ///< each by the others: what the measurement itself would score there
+      predicted;  ///< each node predicted from the others: the score of the measurement itself
 };
 
-/// Nothing of a formula or model.
+/// Returns nothing for a formula or model.
 std::optional<NodesKnown> nodes_of(const Source& source);
 
-/// What `info --json` prints: the report, with the nodes of a measurement, and of a model with what its shader costs.
+/// Returns the text of `info --json`: the report, the nodes of a measurement, and the cost of a model's shader.
 std::string info_json(const SourceReport& report, const std::optional<NodesKnown>& nodes);
 
 }  // namespace burnish::cli

@@ -4,7 +4,7 @@
 
 namespace burnish::cli {
 
-/// What `--json` prints: one value, indented by two; bytes of names that are no UTF-8 become U+FFFD.
+/// Prints the JSON of `--json`: one value, indented by two. Bytes that are no UTF-8, as in some names, become U+FFFD.
 void print_as_json(const nlohmann::ordered_json& json);
 
 }  // namespace burnish::cli

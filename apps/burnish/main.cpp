@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
   CLI::App app{"burnish: measured, scattered or analytic reflectance into a few small positive textures"};
   app.require_subcommand(1);
   app.set_help_flag("-h,--help", "Prints this help.");
-  bool as_json = false;  // found before the version is printed, since it is added before
+  bool as_json = false;  // parsed before --version is printed, since it is added first
   CLI::Option* const json = app.add_flag("--json", as_json, "Prints --version as JSON.");
   json->needs(app.set_version_flag(
       "--version", [&as_json] { return burnish::cli::version_text(as_json); },
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
     burnish::cli::check_no_empty_word(std::span(argv, static_cast<std::size_t>(argc)));
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // CLI11 returns its own codes; ours is 2 for every misuse, 0 for --help.
+    // Every misuse exits with 2 and --help with 0. CLI11's own codes are not used.
     if (error.get_exit_code() == 0) return app.exit(error);
     if (argc == 1) {
       fmt::print(stderr, "burnish: expected a verb, found none; there are\n\n{}",
@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
     }
     const auto meant =
         burnish::cli::misspelling(app, std::span(argv, static_cast<std::size_t>(argc)).subspan(1));
-    constexpr std::size_t kBesideHint = 245;  // so that both lines have less than 300 bytes
+    constexpr std::size_t kBesideHint = 245;  // keeps both lines together below 300 bytes
     fmt::print(stderr, "burnish: {}\nRun with --help for more information.\n",
                burnish::short_message(meant ? *meant : error.what(), kBesideHint));
     return 2;

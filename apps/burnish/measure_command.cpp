@@ -45,7 +45,7 @@ void measure_surface(const std::string& scene, const std::string& out, bool json
                form.height, out);
 }
 
-/// The next directions as an instrument is told them, in degrees.
+/// Returns the next directions in degrees, as CSV for an instrument.
 std::string next_csv(std::span<const NextMeasurement> next) {
   std::string text = "theta_i,phi_i,theta_o,phi_o,error\n";
   for (const auto& [pair, error] : next)
@@ -66,7 +66,7 @@ nlohmann::ordered_json next_json(std::span<const NextMeasurement> next) {
   return list;
 }
 
-/// Lists what to measure next, to a file where one is given.
+/// Lists the directions to measure next, in a file where one is given.
 void say_next(const Source& source, std::size_t count, const std::string& out, bool json) {
   const MeasuredNodes all = measured_nodes(source), nodes = source.samples() ? without_outliers(all) : all;
   const std::vector<NextMeasurement> next = [&] {
@@ -114,7 +114,7 @@ void add_measure_command(CLI::App& app) {
           ->check(in_range(std::size_t{1}, kMostNext));
   verb->add_option("-o,--output,--out", arguments->out,
                    "Names the CSV file to write, with --surface the folder; only --next does without.");
-  // Ten million samples are a gigabyte of text.
+  // The limit is ten million samples, which are a gigabyte of text.
   verb->add_option("--count", arguments->measurement.count, "Draws so many samples.")
       ->excludes(next)
       ->check(in_range(1, 10000000))

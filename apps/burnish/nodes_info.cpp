@@ -31,7 +31,7 @@ NodesInfo nodes_info(const Source& source) {
   info.function = node_figures(info.nodes, SymmetrizedBrdf(source.ref()));
   try {
     info.quality = nodes_quality(info.nodes);
-  } catch (const Error&) {  // too few, or all of them near grazing: nothing foretells another
+  } catch (const Error&) {  // too few nodes, or all of them near grazing: no prediction
     info.quality = negatives_of(info.nodes);
   }
   return info;
@@ -47,7 +47,7 @@ std::string nodes_text(const NodesInfo& info) {
     return fmt::format("relative {:.4f}, rms_log {:.4f}, log_cos {:.4f}, rms {:.4g} 1/sr", f.relative,
                        f.rms_log, f.log_cos, f.rms);
   };
-  // what there is
+  // These lines describe the nodes.
   line("name", source.name);
   line("format", source.findings.format);
   line("channels", fmt::format("{}", nodes.samples.channels));
@@ -62,7 +62,7 @@ std::string nodes_text(const NodesInfo& info) {
                                 quality.negative_share > 0
                                     ? fmt::format(", root mean square {:.3g} 1/sr", quality.negative_rms)
                                     : ""));
-  // how well others know it
+  // These lines say how well each node is predicted.
   line("function", "made reciprocal, it knows them: " + errors(function));
   if (quality.held_out)
     line("unseen", "nodes, by the function between the others: " + errors(*quality.held_out));

@@ -21,13 +21,13 @@ std::string number_text(double x) {
   return x == 0 || std::abs(x) >= 1e-3 ? fmt::format("{:.4g}", x) : fmt::format("{:.1e}", x);
 }
 
-// A name of the JSON in words: "node_expected" is "node expected".
+// Turns a name of the JSON into words: "node_expected" becomes "node expected".
 std::string in_words(std::string name) {
   std::ranges::replace(name, '_', ' ');
   return name;
 }
 
-// Any value on one line: members as "name value", lists with blanks.
+// Formats any value on one line: members as "name value", lists with blanks.
 std::string plain_text(const Json& value) {
   if (value.is_string()) return printable(value.get<std::string>(), 200);
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
@@ -44,7 +44,7 @@ std::string plain_text(const Json& value) {
   return text;
 }
 
-/// Takes each part of the notes once, and prints the rest as it stands.
+/// Takes each known part of the notes once, and prints the other parts as they stand.
 class Notes {
  public:
   explicit Notes(Json json) : json_(std::move(json)) {}
@@ -67,7 +67,7 @@ class Notes {
     json_.erase(found);
     return text;
   }
-  // "samples 500, seed 3" of the names that are there, each with its unit behind it
+  // Joins the values of the names that exist, each followed by its unit: "samples 500, seed 3".
   std::string take_all(std::initializer_list<std::pair<const char*, const char*>> names) {
     std::string text;
     for (const auto& [name, unit] : names)
@@ -96,7 +96,7 @@ class Notes {
     add("by", how);
     if (const std::string symmetrized = take("symmetrized"); symmetrized == "yes")
       add("made", "reciprocal: directions exchanged were averaged before");
-    take("objective");  // of use to the solver alone
+    take("objective");  // serves the solver alone
     for (const char* said_before : {"part", "band"}) take(said_before);
   }
 

@@ -6,12 +6,12 @@
 
 namespace burnish::cli {
 
-/// What a model's notes say about its making, as lines that a person reads: a word and what it says. `notes` is a
-/// model's JSON object (Model::notes); nothing of "{}", and of what is no object the text itself.
+/// Describes the making of a model as lines for people, each a word and its text. `notes` is a model's JSON object
+/// (Model::notes). Returns nothing for "{}". Returns the text itself where it is no JSON object.
 std::vector<std::pair<std::string, std::string>> notes_lines(const std::string& notes);
 
-/// How a solver ended, in words that fit behind its number of steps: "all that were planned" where it was stopped by
-/// their number. `reason` is what to_string(StopReason) says; others are repeated.
+/// Returns the reason why a solver ended, in words that follow its number of steps: "all that were planned" where this
+/// number was the limit. `reason` is a name by to_string(StopReason); other texts are returned unchanged.
 std::string ending_text(const std::string& reason);
 
 }  // namespace burnish::cli

@@ -20,7 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kLeastFraction = 0.02;  // below, the time left is a guess
+constexpr double kLeastFraction = 0.02;  // below this share the time left is a guess
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -89,7 +89,7 @@ class Progress::Line {
   const Clock::time_point start_ = Clock::now();
   Clock::time_point stage_start_ = start_;
   bool done_ = false, drawn_ = false;
-  std::thread thread_;  // last: it uses all of the others
+  std::thread thread_;  // last, since it uses all other members
 };
 
 Progress::Progress(std::string label) {

@@ -7,25 +7,26 @@
 
 namespace burnish::cli {
 
-/// Says on the standard error output, while it lives, what is being done: a line that is redrawn in place from the
-/// second second on, with the time that passed and, once a share of the work is known, the time that is left. Silent
-/// where standard error is no terminal. Its line is gone once it is, so results are printed after that.
+/// Shows on standard error what is being done, as long as it lives. Its line is redrawn in place, for the first time
+/// after two seconds. It shows the time that passed and, once a share of the work is known, the time that is left. It
+/// prints nothing where standard error is no terminal. The destructor removes the line, so print results after that.
 class Progress {
  public:
-  /// `label`: what is done until a stage has a name, "fitting".
+  /// `label` names the work until a stage has a name: "fitting".
   explicit Progress(std::string label);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// To be told the share of the work that is done, from 0 to 1; this must outlive it. Nothing without a terminal.
+  /// Returns a function to call with the share of the work that is done, from 0 to 1. This object must outlive it.
+  /// Returns nullptr without a terminal.
   std::function<void(double fraction)> bar();
-  /// The same of a stage; a new stage counts from its first call.
+  /// Returns a function that also takes the stage's name. The time of a new stage counts from its first call.
   std::function<void(std::string_view stage, double fraction)> stages();
 
  private:
   class Line;
-  std::unique_ptr<Line> line_;  // nothing without a terminal
+  std::unique_ptr<Line> line_;  // null without a terminal
 };
 
 }  // namespace burnish::cli

@@ -49,7 +49,7 @@ struct RenderArguments {
   FigureArguments figure;
 };
 
-// Numbers with commas between them, `least` to `most` of them.
+// Parses `least` to `most` numbers with commas between them.
 std::vector<double> numbers(const std::string& text, std::size_t least, std::size_t most,
                             const char* option) {
   std::vector<double> values;
@@ -97,7 +97,7 @@ double exposure_of(const std::string& text) {
   return value;
 }
 
-// Files name materials of their own: as many as there are, the last given one for the rest.
+// Reads the parts of a mesh, which number their materials. Numbers above the last given material mean the last one.
 std::vector<MeshPart> parts_of(const RenderArguments& arguments) {
   std::vector<MeshPart> parts;
   if (const auto shape = parse_shape(arguments.mesh))
@@ -115,7 +115,7 @@ bool is_file(const std::string& material) {
   return std::filesystem::is_regular_file(material, none);
 }
 
-// The surface that a material's file is, if it is one.
+// Returns the surface that a material's file holds, if it holds one.
 std::optional<SpatialBrdf> surface_of(const std::string& material) {
   if (!is_file(material)) return {};
   const FileBytes file = read_file(material);
@@ -123,7 +123,8 @@ std::optional<SpatialBrdf> surface_of(const std::string& material) {
   return parse_surface(file).brdf;
 }
 
-// What OpenGL draws, tables as textures, and needs nothing of the reference.
+// Returns true if OpenGL can draw all materials. It takes factored tables as textures, and surfaces without environment
+// lighting. It casts no shadows.
 bool is_drawn_by_gl(const RenderArguments& arguments) {
   return !arguments.shadows && std::ranges::all_of(arguments.materials, [&](const std::string& material) {
     if (!is_file(material)) return false;
@@ -162,7 +163,7 @@ Image render_by_cpu(const Scene& scene, const std::optional<Environment>& enviro
   const std::size_t count = arguments.materials.size();
   std::vector<SpatialBrdf> surfaces;
   std::vector<Source> sources;
-  // factored BRDFs in float, as fast as one pair at a time goes
+  // Factored BRDFs are evaluated in float, the fastest way for one pair at a time.
   std::vector<FactoredEvaluator> evaluators;
   surfaces.reserve(count);
   sources.reserve(count);
@@ -196,7 +197,7 @@ void render(const RenderArguments& arguments) {
         fmt::format("--output: expected a name that ends in .png or .exr, found '{}'", arguments.out));
   if (arguments.shadows && !cpu) throw CLI::ValidationError("--shadows: expected --renderer cpu with it");
 
-  // everything is read before anything is drawn: a bad argument is told at once
+  // All arguments are read before anything is drawn, so a bad one is reported at once.
   Scene scene;
   const std::optional<Environment> environment = environment_of(arguments.environment);
   std::vector<std::string> lights = arguments.lights;
@@ -210,7 +211,7 @@ void render(const RenderArguments& arguments) {
   check_writable(arguments.out);
   scene.parts = parts_of(arguments);
 
-  // drawn finer, exposed, averaged
+  // The picture is drawn finer, exposed and averaged.
   const int n = arguments.samples;
   const Image fine = [&] {
     const Progress progress("rendering");

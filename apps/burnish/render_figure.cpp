@@ -22,7 +22,7 @@ namespace burnish::cli {
 
 namespace {
 
-// What is shown of a difference of tone-mapped values: this much is the brightest colour.
+// The brightest colour stands for this difference of tone-mapped values.
 constexpr double kDifferenceScale = 0.25;
 
 Scene scene_of(const std::string& mesh, int vertices) {
@@ -80,7 +80,7 @@ void draw_figure(const FigureArguments& arguments, const std::string& mesh, cons
                  bool json) {
   if (out.empty()) throw CLI::RequiredError("--output");
   check_writable(out);
-  scene_of(mesh, 64);  // a name that is none is told before anything is fitted
+  scene_of(mesh, 64);  // an unknown name is reported before anything is fitted
   const Source truth = open_source(arguments.truth, {});
   const FactoredBrdf model = model_of(arguments, truth);
   const GlContext context;

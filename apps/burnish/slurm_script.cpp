@@ -17,14 +17,14 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kOwn = {"--slurm", "--tasks", "--sbatch"};
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
-constexpr std::uint64_t kBeside = 256 * kMiB;  // of a task's memory: what the system keeps of files
+constexpr std::uint64_t kBeside = 256 * kMiB;  // beyond a fit's own memory: the system's cache of files
 
-// What ends a line for sbatch or a shell, or is not seen.
+// Returns true if a text holds control characters, which end a line for sbatch or a shell, or cannot be seen.
 bool has_control_character(const std::string& text) {
   return std::ranges::any_of(text, [](unsigned char c) { return c < ' ' || c == 0x7f; });
 }
 
-// A word as a shell takes it, whatever is in it but control characters.
+// Quotes a word for a shell. Throws Error for control characters.
 std::string quoted(const std::string& word) {
   if (has_control_character(word))
     throw Error("--slurm: expected words and paths without control characters, found '" + word + "'");

@@ -16,7 +16,7 @@ namespace burnish::cli {
 
 namespace {
 
-// Also where no spectrum will need it.
+// Reports a bad illuminant even where no spectrum needs one.
 void check_illuminant(const std::string& spec) {
   try {
     open_illuminant(spec);

@@ -8,22 +8,22 @@
 
 namespace burnish::cli {
 
-/// A BRDF argument and how to open it.
+/// The BRDF argument of a verb, and the options to open it.
 struct SourceArguments {
   std::string spec;
   OpenOptions options;
 
-  /// Says on the standard error output what the reader warns of.
+  /// Opens the BRDF and prints the reader's warnings on standard error.
   Source open() const;
 };
 
 /// Adds the positional BRDF and the options of OpenOptions to a verb. `arguments` must outlive the parse.
 void add_source_arguments(CLI::App& verb, SourceArguments& arguments);
 
-/// The same without the positional argument.
+/// Adds the options without the positional argument.
 void add_open_options(CLI::App& verb, OpenOptions& options);
 
-/// Of these the light of spectra alone.
+/// Adds only the option for the light under which spectra become RGB.
 void add_illuminant(CLI::App& verb, OpenOptions& options);
 
 }  // namespace burnish::cli

@@ -19,17 +19,18 @@ void add_specular_code(CLI::App& verb);
 void add_specular_plot(CLI::App& verb);
 void add_specular_report(CLI::App& verb);
 
-/// Members by name; an unknown one is a misuse.
+/// Returns the members of these names; an unknown name is a misuse.
 std::vector<PowerMethod> parse_methods(const std::vector<std::string>& names);
 
-/// What a verb gives as text: where it goes, standard output where `output` is empty, and whether JSON is printed.
+/// The destination of a verb's text: a file, or standard output where `output` is empty. `json` prints JSON.
 struct TextOutput {
   std::string output;
   bool json = false;
 };
 void add_text_output(CLI::App& verb, TextOutput& to);
 
-/// Writes it; with --json prints `about` with the file's name ("output"), or else with the text, under `what`.
+/// Writes the text. With --json it also prints `about`, with the file's name as "output". Without a file, the JSON
+/// holds the text under the name `what`.
 void write_text(const TextOutput& to, const std::string& what, const std::string& text,
                 nlohmann::ordered_json about);
 

@@ -31,7 +31,7 @@ double parse_number(const std::string& text, const char* what) {
   return value;
 }
 
-/// "0.01" or "1/255".
+/// Parses "0.01" or "1/255".
 double parse_fraction(const std::string& text, const char* what) {
   const auto slash = text.find('/');
   if (slash == std::string::npos) return parse_number(text, what);
@@ -104,7 +104,7 @@ void add_specular_choose(CLI::App& verb) {
       ->capture_default_str();
   sub->add_flag("--json", arguments->json, "Prints the same as JSON.");
   sub->callback([arguments] {
-    // FIRST:LAST, or one exponent, for which the code has constants
+    // The range is FIRST:LAST, or one exponent, for which the code has constants.
     const std::string& range = arguments->exponents;
     const auto colon = range.find(':');
     const auto number = [](const std::string& text) {
@@ -133,7 +133,7 @@ void add_specular_choose(CLI::App& verb) {
       fmt::print("// exponents {:g} to {:g}: {}, error at most {:g}, cost {}\n", choice.min_exponent,
                  choice.max_exponent, power_info(choice.method).name, choice.bound,
                  power_info(choice.method).cost.weight());
-    // the code of a member once, however many ranges it serves
+    // Several ranges may use one method, whose code is printed once.
     std::vector<PowerMethod> written;
     for (const PowerChoice& choice : choices) {
       if (std::find(written.begin(), written.end(), choice.method) != written.end()) continue;

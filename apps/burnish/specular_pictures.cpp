@@ -43,7 +43,7 @@ struct Row {
   std::string stated;
 };
 
-// What the paper and its checks state, measured.
+// Measures the values that the paper and its checks state.
 std::vector<Row> facts() {
   std::vector<Row> rows;
   const auto add = [&](std::string what, double found, std::string stated) {

@@ -6,8 +6,8 @@
 
 namespace burnish::cli {
 
-/// What `burnish info` says of a surface: size, lobes, maps, the largest share of light that a texel reflects, and what
-/// its fit wrote down; as lines or as JSON.
+/// Describes a surface for `burnish info`, as lines or as JSON: size, lobes, maps, the largest share of light that a
+/// texel reflects, and the notes of its fit.
 std::string surface_info(const SurfaceModel& surface, const std::string& name);
 std::string surface_info_json(const SurfaceModel& surface, const std::string& name);
 

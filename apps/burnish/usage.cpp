@@ -24,7 +24,7 @@ std::vector<std::string> verbs_of(const CLI::App& app, bool hidden_too) {
   std::vector<std::string> names;
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
     if (!verb->get_name().empty() && (hidden_too || !verb->get_group().empty()))
-      names.push_back(verb->get_name());  // the others are groups of options
+      names.push_back(verb->get_name());  // an empty name is a group of options
   return names;
 }
 
@@ -39,7 +39,7 @@ std::vector<std::string> options_of(const CLI::App& app) {
   return names;
 }
 
-// The option that a word is of, --name=value or -nvalue; numbers are none.
+// Returns the option in a word such as --name=value or -nvalue. Numbers are no options.
 std::string option_of(std::string_view word) {
   if (word.starts_with("--")) return std::string(word.substr(0, word.find('=')));
   const bool is_short =
@@ -47,7 +47,7 @@ std::string option_of(std::string_view word) {
   return std::string(is_short ? word.substr(0, 2) : "");
 }
 
-// What is said of a word that is no verb: which it may have meant, or which there are.
+// Returns the message for a word that is no verb: the verb that it may have meant, or all of them.
 std::string expected_verb(const std::vector<std::string>& verbs, std::string_view word) {
   const bool is_topic = word == "formats" || word == "models";
   const std::string meant =
@@ -107,8 +107,8 @@ void check_folder(const std::filesystem::path& folder) {
 
 namespace {
 
-// Endings of other programs' files and of exports; with those of formats they say what a file is: no other kind of file
-// is to have them.
+// Endings of other programs' files and of exports. Together with those of formats they tell a file's kind, so no other
+// kind of file may have them.
 constexpr auto kOtherEndings = std::to_array<std::string_view>(
     {".bmp", ".c",   ".cpp",   ".cube", ".dds",    ".gif",  ".glb",  ".glsl",  ".gltf",
      ".h",   ".hdr", ".hlsl",  ".html", ".jpeg",   ".jpg",  ".js",   ".jsonl", ".ktx2",
@@ -124,7 +124,7 @@ std::string ending_of(const std::string& path) {
 }
 
 bool is_known_ending(const std::string& ending) {
-  if (ending == ".dat") return false;  // ALTA's, and anybody's
+  if (ending == ".dat") return false;  // belongs to ALTA, and to many other programs
   return std::ranges::find(kOtherEndings, ending) != kOtherEndings.end() ||
          std::ranges::any_of(formats(), [&](const Format& format) {
            return std::ranges::count(endings_of(format), ending) > 0;
@@ -164,14 +164,14 @@ std::string list_of_verbs(const CLI::App& app) {
 std::optional<std::string> misspelling(const CLI::App& app, std::span<char* const> arguments) {
   const CLI::App* verb = &app;
   std::string path;
-  bool within = false;  // past the last verb
+  bool within = false;  // true behind the last verb
   for (const std::string_view word : arguments) {
     if (word == "--") return std::nullopt;
     if (const std::string name = option_of(word); !name.empty()) {
       const std::vector<std::string> names = options_of(*verb);
       if (std::find(names.begin(), names.end(), name) == names.end())
         return fmt::format("{}expected an option, found '{}'{}", path, name,
-                           name.starts_with("--") ? suggestion(name, names) : "");  // letters are all near
+                           name.starts_with("--") ? suggestion(name, names) : "");  // letters are all similar
     } else if (!within && !word.starts_with('-')) {
       const std::vector<std::string> verbs = verbs_of(*verb, true);
       if (verbs.empty()) {

@@ -15,7 +15,8 @@
 
 namespace burnish::cli {
 
-/// f(), with its Error as a misuse of the command line (exit code 2): for what options alone decide.
+/// Returns f(), and turns its Error into a misuse of the command line (exit code 2). It is for errors that depend on
+/// options alone.
 template <class F>
 auto usage(F f) -> decltype(f()) {
   try {
@@ -25,10 +26,11 @@ auto usage(F f) -> decltype(f()) {
   }
 }
 
-/// That an option's value is one of these; of another it says which it may have meant.
+/// Checks that an option's value is one of these. The message for another value suggests the one that it may have
+/// meant.
 CLI::Validator one_of(std::vector<std::string> names);
 
-/// That an option's value is a number from low to high.
+/// Checks that an option's value is a number from low to high.
 template <class T>
 CLI::Validator in_range(T low, T high) {
   const auto check = [=](std::string& value) {
@@ -38,31 +40,32 @@ CLI::Validator in_range(T low, T high) {
   };
   return {check, fmt::format("{} in [{} - {}]", CLI::detail::type_name<T>(), low, high)};
 }
-/// That it is a finite number of at least 0, or of more.
+/// Check that a value is a finite number of at least 0, or greater than 0.
 CLI::Validator at_least_zero();
 CLI::Validator above_zero();
 
-/// "; did you mean 'NAME'?" of the name that is closest to a misspelt word, or nothing.
+/// Returns "; did you mean 'NAME'?" with the name closest to a misspelt word, or an empty text where none is close.
 std::string suggestion(std::string_view word, const std::vector<std::string>& names);
 
-/// Before long work: throws Error where a folder can neither be written to nor made. Makes nothing.
+/// Throws Error where a folder can neither be written to nor made; makes nothing. Call it before long work.
 void check_folder(const std::filesystem::path& folder);
 
-/// Before long work: refuses, as a misuse, an output whose name ends as files of another kind do, such as paint.png for
-/// a model. `endings` are those that serve, ".exr"; other names, "paint" and "paint.v2", serve too.
+/// Refuses, as a misuse, an output whose name ends as files of another kind do, such as paint.png for a model. Call it
+/// before long work. `endings` are the accepted ones, ".exr". Names with other unknown endings, "paint" and "paint.v2",
+/// are accepted too.
 void check_ending(const std::string& path, const std::vector<std::string>& endings);
 
-/// The same for a folder that is not there yet: paint.glsl is no name of one.
+/// Does the same for a folder that does not exist yet: paint.glsl is no name of a folder.
 void check_folder_name(const std::string& path);
 
-/// Refuses a command line with an empty word, which no option takes and no file has for its name.
+/// Refuses a command line with an empty word. No option takes an empty word, and no file has it as its name.
 void check_no_empty_word(std::span<char* const> arguments);
 
-/// The verbs that people use, a line each with what they do, and where to read on.
+/// Lists the verbs that people use, a line each with its description, and where to read more.
 std::string list_of_verbs(const CLI::App& app);
 
-/// What a command line's first unknown verb or option may have meant, "expected a verb, found 'ft'; did you mean
-/// 'fit'?"; nothing where all are known.
+/// Returns a message on the first unknown verb or option of a command line: "expected a verb, found 'ft'; did you mean
+/// 'fit'?". Returns nothing where all are known.
 std::optional<std::string> misspelling(const CLI::App& app, std::span<char* const> arguments);
 
 }  // namespace burnish::cli
