@@ -1,4 +1,4 @@
-// How accurate models of a number of bytes are, beside others of the same size.
+// Compares the accuracy of models with that of other methods at the same number of bytes.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -48,13 +48,13 @@ std::vector<Attempt> attempts(const std::vector<std::size_t>& budgets, bool isot
   return list;
 }
 
-// What stands above a score's pictures.
+// Returns the label above a score's pictures.
 std::string label_of(const Score& score) {
   if (score.method.starts_with("analytic:")) return "analytic\n" + score.method.substr(9);
   return fmt::format("{}\n{} bytes", score.method, score.budget > 0 ? score.budget : score.bytes);
 }
 
-// Four times |shown - reference|, but alpha, which stays.
+// Returns four times |shown - reference|. Alpha stays.
 Image8 difference_of(const Image8& shown, const Image8& reference) {
   Image8 difference = shown;
   const bool alpha = shown.channels == 4;
@@ -65,7 +65,7 @@ Image8 difference_of(const Image8& shown, const Image8& reference) {
   return difference;
 }
 
-// A material's pictures: one row of what it looks like, one of four times the difference from the reference.
+// Adds two rows of a material's pictures: the appearance, and four times the difference from the reference.
 void add_pictures(const Material& material, const std::vector<Score>& scores, ContactSheet& sheet) {
   const Image8 reference = picture(material.reference, material.scorer.exposure());
   const bool first = sheet.column_labels.empty();
@@ -83,7 +83,7 @@ void add_pictures(const Material& material, const std::vector<Score>& scores, Co
   sheet.cells.push_back(std::move(differences));
 }
 
-// Each method's mean of one figure over its bytes, and what the measurements themselves score, whatever the bytes.
+// Plots each method's mean of one figure over its bytes. The measurements' own score is a line across all bytes.
 Plot plot_of(const std::vector<MeanScore>& means, const std::string& figure, bool log_y,
              double ErrorFigures::*value) {
   Plot plot{.title = "Mean " + figure + " over the eight RGL materials",
@@ -122,7 +122,7 @@ void plot_means(const Page& page, const std::vector<MeanScore>& means) {
   page.write_plot("accuracy-rms_log", plot_of(means, "rms_log", true, &ErrorFigures::rms_log));
 }
 
-// What the measurement would score itself, where its directions do not say alike.
+// Adds the measurement's own score, from its values with directions exchanged, where these differ.
 void add_measurement(const Material& material, std::vector<Score>& scores) {
   if (const auto itself = exchanged_figures(material.scorer, material.source.ref()))
     scores.push_back({.method = std::string(kMeasurement), .errors = *itself, .picture = {}});
@@ -142,7 +142,7 @@ void report_rgl(Page& page, const fs::path& data) {
   }
   std::vector<std::vector<Score>> scores = run(materials);
 
-  // published models of the same material come first
+  // Published models of the same material come first.
   ContactSheet sheet{.title = "Light at 30 degrees; at most 2,700 bytes"};
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& material = materials[i];
@@ -164,7 +164,8 @@ void report_rgl(Page& page, const fs::path& data) {
   plot_means(page, means);
 }
 
-// A table of so many cells along theta_h, 90 of the MERL size, decoded from a published code of the material.
+// Returns a table of `cells` cells along theta_h, decoded from a published code of the material. 90 is the size of
+// MERL.
 Source merl_stand_in(const fs::path& codes, const std::string& name, int cells) {
   tell(fmt::format("accuracy: {}, decoded", name));
   const Converted table =
@@ -177,7 +178,7 @@ void report_merl(Page& page, const fs::path& data) {
   const bool quick = page.options().quick;
   std::vector<std::string> names = row_names(data / "np/codes.csv");
   std::erase_if(names,
-                [](const std::string& name) { return name.ends_with("_rgb"); });  // of the RGL database
+                [](const std::string& name) { return name.ends_with("_rgb"); });  // are of the RGL database
   const std::size_t every = quick ? 100 : 8;  // a table of MERL's size takes some 20 s to decode
   const int cells = quick ? 45 : 90;
   std::deque<Material> materials;
@@ -220,7 +221,7 @@ void report_others(Page& page) {
   ContactSheet sheet{.title = "Light at 30 degrees; at most 2,700 bytes"};
   for (std::size_t i = 0; i < materials.size(); ++i) {
     std::vector<Score> shown = scores[i];
-    std::erase_if(shown, [](const Score& s) { return s.method == "dgf"; });  // a column for every material
+    std::erase_if(shown, [](const Score& s) { return s.method == "dgf"; });  // not tried on all materials
     add_pictures(materials[i], shown, sheet);
     add_measurement(materials[i], scores[i]);
   }
@@ -229,7 +230,7 @@ void report_others(Page& page) {
   if (!quick) page.write_figure("accuracy-others.png", encode_png(compose(sheet)));
 }
 
-// Errors of each method, ours first, on the rows of one paint that it was not fitted to.
+// Returns each method's errors, ours first, over the rows of one paint that its fits have not seen.
 std::vector<FoldErrors> paint_errors(const Samples& samples, const std::vector<std::string>& methods) {
   std::vector<FoldErrors> errors(methods.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {

@@ -25,12 +25,12 @@ Score score_of(const Material& material, std::string_view method, std::size_t bu
   return score;
 }
 
-// The figures of a mean, in one place.
+// Returns pointers to the figures of a mean, in a fixed order.
 std::array<double*, 6> figures(ErrorFigures& e) {
   return {&e.psnr, &e.ssim, &e.relative, &e.log_cos, &e.rms_log, &e.rms};
 }
 
-// "ours" within any number of fetches, "ours, N fetches" within so many.
+// Names of our method are "ours", with any number of fetches, and "ours, N fetches", with at most N.
 bool is_ours(std::string_view method) {
   return method.starts_with("ours");
 }
@@ -42,7 +42,7 @@ std::optional<int> fetches_of(std::string_view method) {
   return fetches;
 }
 
-// One of ours or of the baselines, at so many bytes; 0: whatever it takes.
+// Fits and scores our method or a baseline, within so many bytes. With 0 the method takes as many as it needs.
 Score run_method(const Material& material, std::string_view method, std::size_t budget) {
   FitOptions options{.target = FitTarget::function, .score = false};
   if (is_ours(method))
@@ -67,7 +67,7 @@ std::vector<std::string> with_figures(std::vector<std::string> head) {
   return head;
 }
 
-// Figures to be printed in bold, in the order of figures().
+// Says which figures to print in bold, in the order of figures().
 using Bold = std::array<bool, 6>;
 
 std::vector<std::string> with_figures(std::vector<std::string> cells, const Score& s, const Bold& bold = {}) {
@@ -83,7 +83,7 @@ std::vector<std::string> with_figures(std::vector<std::string> cells, const Scor
   return cells;
 }
 
-// Which figures of one score are ahead of another's.
+// Says which figures of one score are better than another's.
 Bold ahead_of(Score score, Score other) {
   const auto own = figures(score.errors), others = figures(other.errors);
   Bold ahead;
@@ -94,7 +94,7 @@ Bold ahead_of(Score score, Score other) {
   return ahead;
 }
 
-// Of every mean the figures that table_of prints in bold.
+// Returns the figures of each mean that table_of prints in bold.
 std::vector<Bold> bold_figures(const std::vector<MeanScore>& means) {
   std::vector<Bold> bold(means.size(), Bold{});
   for (std::size_t i = 0; i < means.size(); ++i)
@@ -140,7 +140,7 @@ std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
       jobs[k].score = &row[k];
       if (jobs[k].method == "ours") row[k] = run_method(material, jobs[k].method, jobs[k].budget);
     }
-    // a fit that chose so many fetches is the one that is given them
+    // A fit of "ours" that chose N fetches is also the fit with at most N, and is not repeated.
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       if (jobs[k].method == "ours") continue;
       const std::optional<int> fetches = fetches_of(jobs[k].method);
@@ -156,7 +156,7 @@ std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
       row[k] = std::move(copy);
     }
   }
-  // They take one thread each, most of the time.
+  // The other fits run side by side, since each takes one thread most of the time.
   std::atomic<std::size_t> next = 0;
   std::vector<std::future<void>> workers;
   for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t)

@@ -16,36 +16,36 @@
 
 namespace burnish::reports {
 
-/// What a measurement would score itself (exchanged_figures) is called so. It is no model: tables never have it in bold.
+/// The method's name for a measurement's own score (exchanged_figures). It is no model: tables never have it in bold.
 inline constexpr std::string_view kMeasurement = "the measurement";
 
 /// One representation of one material.
 struct Score {
   std::string
-      method;  ///< "ours", one of baseline_methods(), what a published model is called, or kMeasurement
+      method;  ///< "ours", one of baseline_methods(), the name of a published model, or the name kMeasurement
   std::size_t budget = 0;
   ErrorFigures errors;
   std::size_t bytes = 0;
   std::optional<EvaluationCost> cost;
-  double seconds = 0;  ///< of the fit; 0: not fitted here
-  int fetches = 0;     ///< that the fit was given or chose; 0: none of ours, or lobes in whatever number
-  Image8 picture;      ///< a lit sphere, light at 30 degrees, under the reference's exposure; may be none
+  double seconds = 0;  ///< the fit's time; 0: not fitted here
+  int fetches = 0;     ///< given to the fit or chosen by it; 0: not ours, or as many as the lobes take
+  Image8 picture;      ///< a lit sphere, light at 30 degrees, under the reference's exposure; may be empty
 };
 
-/// A method at the budgets it is tried at; none: whatever it takes.
+/// A method and its budgets in bytes. Without a budget, the method takes as many bytes as it needs.
 struct Attempt {
   std::string_view method;
   std::vector<std::size_t> budgets;
 };
 
-/// What methods are tried on; stays where it is.
+/// A material that methods are tried on. It must not move.
 struct Material {
   std::string name;
   Source source;
   SymmetrizedBrdf reference;
   Scorer scorer;
   std::vector<Attempt> attempts = {};
-  std::optional<std::size_t> shown_budget = {};  ///< scores up to it have pictures
+  std::optional<std::size_t> shown_budget = {};  ///< scores within it have pictures
 
   /// Throws Error as Scorer does.
   Material(std::string called, Source opened, const FigureOptions& options = {})
@@ -57,27 +57,27 @@ struct Material {
   Material& operator=(const Material&) = delete;
 };
 
-/// A sphere lit at 30 degrees.
+/// Draws a sphere lit at 30 degrees.
 Image8 picture(BrdfRef brdf, double exposure);
 
-/// Fits and scores each material's attempts, in their order; those that are not "ours" side by side.
+/// Fits and scores each material's attempts, in their order. Methods other than "ours" run side by side.
 std::vector<std::vector<Score>> run(const std::deque<Material>& materials);
 
-/// Scores a model that others published, made reciprocal; `method` is what it is called.
+/// Scores a published model, made reciprocal, under the name `method`.
 Score run_published(const Material& material, std::string_view method, const Source& model);
 
-/// The mean of some scores of a method at a budget.
+/// The mean of a method's scores at a budget.
 struct MeanScore {
   Score score;
   int materials = 0;
 };
-/// In the order the methods and budgets came first.
+/// Returns the means in the order in which methods and budgets first appear.
 std::vector<MeanScore> means_of(const std::vector<std::vector<Score>>& scores);
 
-/// Means, a row each. Where the figure of another method is ahead of that of "ours" over as many materials,
-/// and took no more bytes than ours was given, both figures are bold.
+/// Returns a table with a row for each mean. Both figures are bold where another method's is better than that of "ours"
+/// over as many materials. The other method must have taken no more bytes than ours was given.
 Table table_of(const std::vector<MeanScore>& means);
-/// Every score, a row each, scores[i] those of materials[i].
+/// Returns a table with a row for each score. scores[i] are those of materials[i].
 Table table_of(const std::deque<Material>& materials, const std::vector<std::vector<Score>>& scores);
 
 }  // namespace burnish::reports

@@ -1,4 +1,5 @@
-// Spheres lit by square lamps: tables of area lights, and those of a fitted GGX, beside samples of the lamp.
+// Draws spheres lit by square lamps with tables of area lights, and with those of a fitted GGX. Compares them with
+// samples of the lamp.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,9 +27,9 @@ namespace {
 constexpr std::array kLampDegrees{10, 30, 90};
 constexpr double kLampDistance = 4, kLampAngle_deg = 40;
 
-// A square lamp as the sphere's middle sees it.
+// A square lamp, seen from the sphere's middle.
 struct Lamp {
-  Vec3 centre, u, v;  // halves of its sides
+  Vec3 centre, u, v;  // half the sides
 
   explicit Lamp(double degrees) {
     const double half = kLampDistance * std::tan(0.5 * radians(degrees)), a = radians(kLampAngle_deg);
@@ -67,8 +68,9 @@ Image drawn_by_table(const AreaLightTable& table, const Lamp& lamp, int size) {
   });
 }
 
-// One pixel of the truth: side^2 places on the lamp and side^2 half vectors, the logarithm of whose tan^2(theta_h / 2) is
-// evenly spread, both stratified and weighed by the sum of their densities [Veach1995].
+// Computes one pixel of the truth from side^2 places on the lamp and side^2 half vectors. The logarithm of the half
+// vectors' tan^2(theta_h / 2) is evenly spread. Both sets are stratified, and weighted by the sum of their densities
+// [Veach1995].
 class LampSamples {
  public:
   LampSamples(BrdfRef brdf, const Lamp& lamp, Vec3 n, int side)
@@ -100,7 +102,7 @@ class LampSamples {
   }
 
  private:
-  static constexpr double kRange = 18.42;  // of the logarithm: 1e8
+  static constexpr double kRange = 18.42;  // length of the logarithm's interval: 1e8
 
   void add(Vec3 wi) {
     const double across = dot(wi, normal_), height = dot(centre_, normal_);
@@ -120,7 +122,7 @@ class LampSamples {
     if (size < 1e-12) return 0;
     const double largest = largest_visible_half((wo_.x * h.x + wo_.y * h.y) / size, wo_.z);
     if (m > largest || m < largest * std::exp(-kRange)) return 0;
-    // solid angle of wi: 8 wo.h m / (1 + m)^2 d(log m) dphi
+    // The solid angle of wi is 8 wo.h m / (1 + m)^2 d(log m) dphi.
     return (1 + m) * (1 + m) / (8 * dot(wo_, h) * m * kRange * kTwoPi);
   }
 
@@ -137,7 +139,7 @@ Image drawn_by_samples(BrdfRef brdf, const Lamp& lamp, int size, int side) {
   });
 }
 
-// dB of each table's pictures.
+// Returns the psnr in dB of each table's picture.
 std::vector<double> scores(BrdfRef brdf, std::span<const AreaLightTable> tables, double degrees, int size,
                            int side) {
   const Lamp lamp(degrees);
@@ -150,7 +152,7 @@ std::vector<double> scores(BrdfRef brdf, std::span<const AreaLightTable> tables,
   return all;
 }
 
-// The customary way: a GGX with a Lambertian part is fitted, its highlight becomes one lobe of a table.
+// Follows the customary way: a GGX with a Lambertian part is fitted, and its highlight becomes one lobe of a table.
 AreaLightTable table_of_ggx(const Source& source) {
   const AnalyticFit fit = fit_analytic(from_brdf(source.ref(), 8000, 1, false), "ggx");
   return fit_area_lights(fit.brdf, {.lobes = 1});

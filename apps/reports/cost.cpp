@@ -1,4 +1,4 @@
-// What an evaluation costs and how wrong it is: fits by bytes and fetches, beside what others would use.
+// Measures the cost and the error of an evaluation: fits by bytes and fetches, and the usual alternatives.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,16 +33,16 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// What one way to store a material costs, and how wrong it is; what it has not is kNone.
+// The cost and the error of one way to store a material. Figures that it does not have are kNone.
 struct Row {
   std::string method;
-  std::size_t budget = 0;  // 0: whatever it takes
+  std::size_t budget = 0;  // 0: no limit
   int asked = 0;           // fetches that a fit may take
   double bytes = kNone, psnr = kNone, relative = kNone;
   double fetches = kNone, textures = kNone, operations = kNone, roots = kNone;
   double one_by_one = kNone, batched = kNone;  // ns
-  double frame = kNone, of_ggx = kNone;        // ms, and of that of GGX
-  double seconds = kNone;                      // of the fit
+  double frame = kNone, of_ggx = kNone;        // ms, and relative to that of GGX
+  double seconds = kNone;                      // time of the fit
 };
 
 struct Column {
@@ -73,7 +73,7 @@ std::vector<std::string> cells_of(std::vector<std::string> cells, const Row& row
   return cells;
 }
 
-// Sizes of the measurement.
+// The sizes of the measurement.
 struct Extent {
   std::vector<std::size_t> budgets;
   std::vector<int> fetches;
@@ -99,13 +99,14 @@ Extent extent_of(bool quick) {
           .figures = {}};
 }
 
-// Everything that is tried on one material, each with what times it. What is timed is kept by its closures.
+// All methods tried on one material, each with the functions that time it. These functions own the models that they
+// time.
 class Contest {
  public:
   Contest(const Material& material, const PairSet& set, const Extent& extent)
       : material_(material), set_(set), extent_(extent) {}
 
-  /// A fit for each number of fetches, which rise.
+  /// Adds a fit for each number of fetches; the numbers rise.
   void add_fits(std::size_t budget, const std::vector<int>& fetches);
   void add_ggx();
   void add_network(const NeuralBrdf& network);
@@ -113,15 +114,15 @@ class Contest {
   void add_merl();
   void add_separable(const std::string& method, std::size_t budget);
 
-  /// Times what was added, frames only where there is OpenGL.
+  /// Times the added methods. Frames are timed only where there is OpenGL.
   std::vector<Row> rows(bool with_frames);
 
  private:
   struct Entry {
     Row row;
-    std::function<void()> one_by_one, batched;  // empty: there is none
+    std::function<void()> one_by_one, batched;  // empty: none
     std::optional<FrameMaterial> frame;
-    std::optional<std::size_t> same_as = {};  // an entry that stands for this one, too
+    std::optional<std::size_t> same_as = {};  // an earlier entry whose times this one shares
   };
 
   Row row_of(const std::string& method, std::size_t bytes, BrdfRef model) const;
@@ -172,8 +173,9 @@ Contest::Entry Contest::entry_of_fit(std::size_t budget, int asked) const {
                                  *model}};
 }
 
-// From the most fetches to the least. Plans take tables in one order while there are fetches (fetch_plan.h): a fit that
-// takes no more than a smaller number is what that number gives, bit by bit, and neither fitted nor timed again.
+// Fits from the most fetches to the least. Plans take tables in one order while there are fetches (fetch_plan.h). A fit
+// that needs no more than a smaller number is therefore, bit by bit, the fit with that number. It is neither fitted nor
+// timed again.
 void Contest::add_fits(std::size_t budget, const std::vector<int>& fetches) {
   const std::size_t first = entries_.size();
   entries_.resize(first + fetches.size());
@@ -216,7 +218,7 @@ void Contest::add_network(const NeuralBrdf& network) {
                       FrameMaterial{name, shader_of(*kept), *kept}});
 }
 
-// The reference itself, which has no error.
+// Adds the reference itself, which has no error.
 void Contest::add_measurement() {
   const auto* table = std::get_if<RglTable>(&material_.source.brdf);
   if (!table) return;
@@ -226,13 +228,13 @@ void Contest::add_measurement() {
   entries_.push_back({row, one_by_one(set_, kept), {}, {}});
 }
 
-// As its readers use it, and as a texture unit would.
+// Adds the table twice: with nearest entries, as its readers evaluate it, and filtered, as a texture unit would.
 void Contest::add_merl() {
   const std::string name = said("MERL table");
   tell("cost: " + name);
   const auto table =
       std::make_shared<const HalfDiffTable>(tabulate_half_diff(material_.reference, 90, 90, 180, false));
-  // NearestHalfDiff refers to the table
+  // NearestHalfDiff refers to the table, so the deleter keeps it.
   const std::shared_ptr<const NearestHalfDiff> nearest(new NearestHalfDiff{table.get()},
                                                        [table](const NearestHalfDiff* p) { delete p; });
   const std::size_t bytes = sizeof(float) * table->values.size();
@@ -319,7 +321,7 @@ std::vector<Row> Contest::rows(bool with_frames) {
   return rows;
 }
 
-// The published network of a material of that name, if there is one.
+// Returns the published network of a material of that name, if there is one.
 std::optional<NeuralBrdf> published_network(const ReportOptions& options, const std::string& name) {
   if (!options.data) return {};
   const fs::path file = *options.data / "nbrdf/rgl.csv";
@@ -342,7 +344,7 @@ std::vector<Row> rows_of(const ReportOptions& options, const Material& material,
   return contest.rows(with_frames);
 }
 
-// The mean of each figure over the materials that have it.
+// Returns the mean of each figure over the materials that have it.
 std::vector<Row> means_of(const std::vector<std::vector<Row>>& materials) {
   std::vector<Row> means;
   for (const auto& rows : materials)
@@ -377,14 +379,14 @@ constexpr Look kLooks[] = {{"GGX", "#2a9d6f"},
                            {"MERL table, filtered", "#8c5a2b"},
                            {"svd", "#d1495b"},
                            {"nmf", "#e08e0b"}};
-constexpr std::array kBlues{"#74aede", "#1b6ca8", "#0a2f52"};  // of our budgets
+constexpr std::array kBlues{"#74aede", "#1b6ca8", "#0a2f52"};  // colours of our budgets
 constexpr double kPointWidth = 8;
 constexpr const char* kReferenceColor = "#8a8f98";
 
-// One line a budget.
+// Returns a line for each budget.
 std::vector<PlotSeries> series_of_fits(const std::vector<Row>& means, double Row::*x) {
   std::vector<PlotSeries> series;
-  std::map<std::size_t, std::size_t> place;  // of a budget's series
+  std::map<std::size_t, std::size_t> place;  // index of each budget's series
   for (const Row& row : means) {
     if (row.method != "ours") continue;
     const auto [at, added] = place.try_emplace(row.budget, series.size());
@@ -402,7 +404,7 @@ std::vector<PlotSeries> series_of_fits(const std::vector<Row>& means, double Row
 struct Interval {
   double least = std::numeric_limits<double>::max(), most = 0;
 };
-// Of what a figure has above 0.
+// Returns the interval of a figure's positive values.
 Interval interval_of(const std::vector<Row>& means, double Row::*figure) {
   Interval interval;
   for (const Row& row : means)
@@ -411,7 +413,7 @@ Interval interval_of(const std::vector<Row>& means, double Row::*figure) {
   return interval;
 }
 
-// A point a budget; across the plot where x is 0, which a logarithmic axis does not have.
+// Returns a point for each budget. Where x is 0, which a logarithmic axis does not have, it is a line across the plot.
 PlotSeries series_of_peer(const std::vector<Row>& means, const Look& look, double Row::*x) {
   PlotSeries series{.label = look.method,
                     .style = PlotStyle::line_and_points,
@@ -433,8 +435,8 @@ PlotSeries series_of_peer(const std::vector<Row>& means, const Look& look, doubl
   return series;
 }
 
-// The relative error over one figure. What has none of a figure is left out; the reference, which has no error, is a
-// line upwards.
+// Plots the relative error over one figure. Methods without that figure are left out. The reference, which has no
+// error, is a vertical line.
 Plot plot_of(const std::vector<Row>& means, const std::string& x_label, double Row::*x) {
   Plot plot{.title = "Relative error against " + x_label,
             .x_label = x_label,
@@ -457,7 +459,7 @@ Plot plot_of(const std::vector<Row>& means, const std::string& x_label, double R
   return plot;
 }
 
-// Nothing where the machine has none.
+// Returns null where the machine has no OpenGL.
 std::unique_ptr<GlContext> open_gl() {
   try {
     return std::make_unique<GlContext>(GlDevice::gpu_first);

@@ -9,9 +9,9 @@
 
 namespace burnish::reports {
 
-/// What the pages about costs fit, isotropic and of three channels: every such file of the folder `rgl` of the
-/// measurements, by name; without measurements tables that a virtual goniometer makes of formulas. `quick`: the
-/// first alone.
+/// Returns the isotropic sources of three channels that the pages on costs fit. They are all such files of the
+/// measurements' folder `rgl`, by name. Without measurements they are tables that a virtual goniometer makes of
+/// formulas. `quick` returns the first alone.
 std::vector<Source> cost_sources(const ReportOptions& options);
 
 }  // namespace burnish::reports

@@ -14,7 +14,7 @@
 
 namespace burnish::reports {
 
-// A measurement followed from the eye: with its directions exchanged, as RglSampler draws.
+// A measurement whose paths start at the eye: its directions are exchanged, as RglSampler draws them.
 struct Measurement {
   const RglTable* table;
 
@@ -26,11 +26,11 @@ struct Measurement {
 inline constexpr std::size_t kWays = 5;
 inline constexpr std::array<const char*, kWays> kWayNames{"cosine", "GGX", "GGX + cosine", "RGL's own",
                                                           "burnish"};
-// and what drawing by the material alone aims at: the density f cos(theta_i) / albedo
+// The last density is the aim of drawing by the material alone: f cos(theta_i) / albedo.
 inline constexpr std::size_t kDensities = kWays + 1, kOurs = kWays - 1;
 inline constexpr const char* kProportional = "in proportion";
 
-// What an isotropic BRDF reflects by its own light, the root mean square of the channels, by the angle of wo.
+// The albedo of an isotropic BRDF by the angle of wo, as the root mean square of the channels.
 class Albedo {
  public:
   explicit Albedo(BrdfRef brdf) {
@@ -55,7 +55,7 @@ class Albedo {
   std::vector<double> albedo_;
 };
 
-// The density of an isotropic BRDF's own light; nothing draws by it.
+// The density in proportion to an isotropic BRDF's f cos(theta_i). It cannot draw directions.
 class Proportional {
  public:
   explicit Proportional(BrdfRef brdf) : brdf_(brdf), albedo_(brdf) {}
@@ -71,7 +71,7 @@ class Proportional {
   Albedo albedo_;
 };
 
-// A lobe chosen by its albedo for this wo, drawn from tables of its own; the density is that of all.
+// Chooses a lobe by its albedo for this wo, and draws from that lobe's own tables. The density sums over all lobes.
 class LobeChoice {
  public:
   explicit LobeChoice(const FactoredBrdf& model) {
@@ -112,7 +112,7 @@ class LobeChoice {
   std::vector<OneLobe> lobes_;
 };
 
-// A BRDF and every way to draw for it.
+// A BRDF with every way to draw directions for it.
 struct Drawers {
   CosineSampler cosine;
   GgxProxy ggx, ggx_and_cosine;

@@ -26,14 +26,14 @@ namespace {
 
 struct Material {
   const char *name, *source, *model;
-  Rgb diffuse;  // a second lobe
+  Rgb diffuse;  // adds a second lobe
 };
 constexpr Material kMaterials[] = {
     {"gold", "ggx:alpha_x=0.15,alpha_y=0.15,f0=0.9/0.7/0.4", "pqp", 0},
     {"plastic", "ggx:alpha_x=0.3,alpha_y=0.3,f0=0.05,kd=0.4/0.1/0.05", "pqpr", 0},
     {"ceramic", "ggx:alpha_x=0.1,alpha_y=0.1,f0=0.05", "pqpr", {0.05, 0.1, 0.3}},
 };
-// Anisotropic ones: taps.
+// Anisotropic materials, which are lit by taps.
 constexpr Material kBrushed[] = {
     {"brushed gold", "ggx:alpha_x=0.1,alpha_y=0.3,f0=0.9/0.7/0.4", "pqp", 0},
     {"silk", "ggx:alpha_x=0.15,alpha_y=0.4,f0=0.3", "pqp", {0.02, 0.05, 0.2}},
@@ -60,13 +60,13 @@ const Tabulation kTabulations[] = {{"round kernels", {.side = 32, .harmonics = 0
                                    {"four orders", {}},
                                    {"four orders, 64 texels", {.side = 64}}};
 
-constexpr int kSize = 64;  // of the pictures
+constexpr int kSize = 64;  // pixels along a picture's side
 
-int samples_of(const Page& page) {  // a pixel
+int samples_of(const Page& page) {  // samples in each pixel
   return page.options().quick ? 16 : 4096;
 }
 
-// The sphere of metrics/sphere_images.h, each pixel by `radiance` of its normal.
+// Draws the sphere of metrics/sphere_images.h with `radiance(normal, view)` in each pixel.
 Image sphere(const std::function<Rgb(Vec3 n, Vec3 v)>& radiance) {
   Image image(kSize, kSize, 3);
   for (int y = 0; y < kSize; ++y)
@@ -111,11 +111,11 @@ void paste(Image8& sheet, const Image& shown, int column, int row) {
     std::ranges::copy_n(part.at(0, y).begin(), 3 * kSize, sheet.at(column * kSize, row * kSize + y).begin());
 }
 
-// What Monte Carlo draws of one material in one environment.
+// The Monte Carlo picture of one material in one environment.
 struct Truth {
   double exposure;
   Image shown;
-  double own_decibels;  // of such a picture with other random numbers and a quarter of the draws
+  double own_decibels;  // psnr of a second picture with other random numbers and a quarter of the draws
 
   double decibels(const Image& image) const {
     return psnr(mean_squared_error(tone_map(image, exposure), shown));
@@ -135,7 +135,7 @@ Truth truth_of(const FactoredBrdf& brdf, const Environment& environment, int sam
   return truth;
 }
 
-// The first cells of a row.
+// Returns the first cells of a row.
 std::vector<std::string> row_head(const Material& material, const FactoredBrdf& brdf,
                                   const Environment& environment, const Truth& truth) {
   return {material.name, std::to_string(brdf.lobes().size()), environment.name,
@@ -143,7 +143,7 @@ std::vector<std::string> row_head(const Material& material, const FactoredBrdf& 
 }
 const std::vector<std::string> kHead{"material", "lobes", "environment", "truth"};
 
-// The environment without its formulas: a picture of it.
+// Returns a picture of the environment, without its formulas.
 Environment pictured(const Environment& environment) {
   const SkyImage grid(Image(512, 256, 3));
   Image image = grid.image();
@@ -173,7 +173,7 @@ Table taps_table(std::span<const Environment> all, int samples) {
   return table;
 }
 
-// The truth, what was found, and ten times their difference.
+// Pastes the truth, the picture found, and ten times their difference.
 void paste_row(Image8& sheet, const Truth& truth, const Image& found, int column, int row) {
   paste(sheet, truth.shown, column, row);
   Image difference = tone_map(found, truth.exposure);
@@ -183,7 +183,7 @@ void paste_row(Image8& sheet, const Truth& truth, const Image& found, int column
   paste(sheet, difference, column + 2, row);
 }
 
-// Isotropic materials: every tabulation in every environment, and what each costs.
+// Reports isotropic materials: every tabulation in every environment, and the cost of each.
 void report_prefiltered(Page& page, std::span<const Environment> all) {
   std::vector<std::string> names;
   for (const Tabulation& t : kTabulations) names.emplace_back(t.name);

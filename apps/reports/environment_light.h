@@ -4,7 +4,7 @@
 
 namespace burnish::reports {
 
-/// How far image-based light is from Monte Carlo: a section of the page on shaders, and
+/// Measures the difference of image-based light from Monte Carlo, for a section of the page on shaders. Draws
 /// environment-light.png. Needs a GlContext.
 void report_environment_light(Page& page);
 

@@ -13,7 +13,7 @@
 
 namespace burnish::reports {
 
-/// Random pairs of directions above the horizon, each in both forms, the same numbers: floats.
+/// Random pairs of directions above the horizon in both forms, with the same numbers: floats.
 class PairSet {
  public:
   explicit PairSet(std::size_t count);
@@ -26,11 +26,11 @@ class PairSet {
   std::array<std::vector<float>, 6> components_;
 };
 
-/// Evaluates all pairs one by one as a renderer does, which knows no type, only a BrdfRef. `set` and what `eval` refers to
-/// must outlive what is returned.
+/// Returns a function that evaluates all pairs one by one through a BrdfRef. A renderer does so too, since it does not
+/// know the type. `set` and the referent of `eval` must outlive the function.
 std::function<void()> one_by_one(const PairSet& set, BrdfRef eval);
 
-/// The same, and keeps what evaluates.
+/// Returns the same function, which also keeps `eval` alive.
 template <Brdf Eval>
 std::function<void()> one_by_one(const PairSet& set, std::shared_ptr<const Eval> eval) {
   return [run = one_by_one(set, BrdfRef(*eval)), eval] { run(); };
@@ -39,8 +39,8 @@ std::function<void()> one_by_one(const PairSet& set, std::shared_ptr<const Eval>
 /// Evaluates many pairs at once into three planes, as FactoredEvaluator does.
 using SpanEval = std::function<void(const DirectionSpans& directions, std::span<float> f)>;
 
-/// The same for all pairs. Throws Error, with the name, where the mean relative error of the values against the
-/// truth is above the bound. `set` must outlive what is returned.
+/// Returns a function that evaluates all pairs at once. Throws Error, with the name, where the mean relative error of
+/// the values against the truth exceeds the bound. `set` must outlive the function.
 std::function<void()> batched(const std::string& name, const PairSet& set, const SpanEval& eval,
                               BrdfRef truth, double bound);
 

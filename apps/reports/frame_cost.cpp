@@ -1,4 +1,4 @@
-// Milliseconds a frame of what `burnish fit` gives and of what it is compared with.
+// Measures the milliseconds a frame of models by `burnish fit` and of models that they are compared with.
 #include <algorithm>
 #include <deque>
 #include <iterator>
@@ -28,7 +28,7 @@ namespace burnish::reports {
 
 namespace {
 
-// A frame of nothing but its vertices, directions and cosines.
+// Draws a constant, so a frame costs only its vertices, directions and cosines.
 SurfaceShader matte() {
   return {.declarations = "", .view = "", .light = "", .value = "vec3(0.3183099)", .textures = {}};
 }
@@ -48,7 +48,7 @@ NeuralBrdf some_network() {
   return NeuralBrdf(weights);
 }
 
-// A fit by its command.
+// A fit and the command that made it.
 struct Fitted {
   std::string command;
   FactoredBrdf model;
@@ -72,13 +72,13 @@ constexpr const char* kAnisotropic = "ggx:alpha_x=0.1,alpha_y=0.3,f0=0.8,kd=0.3"
 
 constexpr int kLights[] = {1, 4, 16}, kRepetitions = 11;
 
-// The first of the report of costs.
+// Returns the first source of the report of costs.
 Source source_of(ReportOptions options) {
   options.quick = true;
   return std::move(cost_sources(options).front());
 }
 
-// What is compared.
+// The compared models.
 struct Models {
   std::deque<Fitted> fits;
   Fitted anisotropic;
@@ -102,7 +102,7 @@ Models models_of(const Source& source, bool quick) {
   return {.fits = std::move(fits), .anisotropic = fit_by_command(open_source(kAnisotropic, {}), {}, {})};
 }
 
-// The first is what the others are related to.
+// Returns the materials; times are given relative to the first one's.
 std::vector<FrameMaterial> materials_of(const Models& models) {
   std::vector<FrameMaterial> materials;
   materials.push_back({"analytic GGX, anisotropic", shader_of(models.ggx), models.ggx});
@@ -131,15 +131,15 @@ std::vector<FrameMaterial> materials_of(const Models& models) {
   return materials;
 }
 
-// The page has a column for each kind of device, and one run measures one of them. So a run writes its rows to
-// frame-cost-DEVICE-KIND.csv, and the page is joined from the rows of all devices that there are.
+// The page has a column for each kind of device, and one run measures one of them. A run therefore writes its rows to
+// frame-cost-DEVICE-KIND.csv. The page joins the rows of all devices that were measured.
 struct Device {
   const char* name;   // in names of files
   const char* title;  // above its columns
 };
 constexpr Device kGpu{"gpu", "GPU"}, kProcessor{"processor", "processor"};
 
-// The rows of a device's file below its head; none where it was not measured.
+// Returns the rows of a device's file below its head, or none where the device was not measured.
 std::vector<std::vector<std::string>> rows_of(const fs::path& folder, const Device& device,
                                               const char* kind) {
   const fs::path file = folder / fmt::format("frame-cost-{}-{}.csv", device.name, kind);
@@ -158,8 +158,8 @@ std::vector<std::vector<std::string>> rows_of(const fs::path& folder, const Devi
   return rows;
 }
 
-// Both devices' rows side by side, by what the first cell names. Of a pair of cells, "least (median)" and the ratio
-// to GGX, the page has "least (ratio)"; the medians stay in the files.
+// Puts both devices' rows side by side, matched by the first cell. A pair of cells holds "least (median)" and the ratio
+// to GGX. The page shows "least (ratio)"; the medians stay in the files.
 Table beside_each_other(const fs::path& folder, const char* kind, const std::vector<std::string>& columns) {
   std::vector<std::string> names, head{"material"};
   std::map<std::string, std::vector<std::string>> cells;
@@ -170,7 +170,7 @@ Table beside_each_other(const fs::path& folder, const char* kind, const std::vec
     for (const auto& row : rows) {
       if (!cells.contains(row.front())) names.push_back(row.front());
       std::vector<std::string>& line = cells[row.front()];
-      line.resize(head.size() - columns.size() - 1, "");  // what another device did not draw
+      line.resize(head.size() - columns.size() - 1, "");  // empty cells for an earlier device
       for (std::size_t i = 1; i + 1 < row.size(); i += 2)
         line.push_back(fmt::format("{} ({})", row[i].substr(0, row[i].find(' ')), row[i + 1]));
     }
@@ -183,7 +183,7 @@ Table beside_each_other(const fs::path& folder, const char* kind, const std::vec
   return table;
 }
 
-// What drew the rows, a row for each device, and the source of the fits. Throws Error where nothing was measured.
+// Returns a row for each device that drew, and sets the source of the fits. Throws Error where nothing was measured.
 Table drawers(const fs::path& folder, std::string& source) {
   Table table({"drawn by", "seconds to measure", "on", "at commit"});
   for (const Device& device : {kGpu, kProcessor})

@@ -32,7 +32,7 @@ Scene knot(int lights) {
 }  // namespace
 
 std::vector<Times> time_rounds(const std::vector<std::function<void(int)>>& tasks, int repetitions) {
-  // rounds enough for the wait at their end to be nothing
+  // So many rounds run at once that the wait at their end hardly counts.
   constexpr double kMinSeconds = 0.01;
   constexpr int kMaxRounds = 4096;
   int rounds = 1;
@@ -77,7 +77,7 @@ std::vector<Times> time_frames(const std::vector<FrameMaterial>& materials, int 
   for (const FrameMaterial& material : materials) {
     renderers.push_back(
         std::make_unique<GlRenderer>(scene, std::span(&material.shader, 1), kFrameSize, kFrameSize));
-    renderers.back()->draw();  // compiles
+    renderers.back()->draw();  // compiles the shader
   }
 
   std::vector<std::function<void(int)>> tasks;

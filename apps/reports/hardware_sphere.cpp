@@ -1,4 +1,4 @@
-// A sphere shaded by a unit of hw/, pixel by pixel.
+// Draws a sphere shaded by a unit of hw/, pixel by pixel.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -20,14 +20,14 @@ namespace {
 constexpr int kSize = 256, kExponent = 50;
 constexpr double kScale = 64;  // levels of 255 at the end of the difference's colours
 
-// Blinn's cosine at a pixel, the light 30 degrees from the viewer; 0 outside the sphere.
+// Returns Blinn's cosine at a pixel, with the light 30 degrees from the viewer; 0 outside the sphere.
 double cosine_at(int x, int y) {
   const auto n = sphere_normal(kSize, x + 0.5, y + 0.5);
   const Vec3 h{std::sin(radians(15)), 0, std::cos(radians(15))};
   return n ? std::max(0.0, dot(*n, h)) : 0;
 }
 
-// c^e from the powers themselves, or a unit's answers, in levels of 255.
+// Returns in levels of 255 a unit's answers from its file, or c^e by pow where `file` is empty.
 Image shaded(const std::string& file) {
   Image image(kSize, kSize, 1);
   std::ifstream answers(file);
@@ -42,7 +42,7 @@ Image shaded(const std::string& file) {
   return image;
 }
 
-// Beside the sphere a dark grey, so that its outline shows.
+// Fills the surroundings of the sphere with a dark grey, so that its outline shows.
 Image8 grey(const Image& levels) {
   Image8 image(kSize, kSize, 3);
   for (int y = 0; y < kSize; ++y)

@@ -1,5 +1,4 @@
-// burnish_reports NAME [OPTIONS] OUTPUT_FOLDER: measures what the pages of docs/results state and writes
-// them.
+// burnish_reports NAME [OPTIONS] OUTPUT_FOLDER measures the figures of the pages in docs/results and writes the pages.
 #include <cstdlib>
 #include <exception>
 #include <memory>

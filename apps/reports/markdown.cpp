@@ -28,7 +28,7 @@ std::string csv_line(const std::vector<std::string>& cells) {
   return fmt::format("{}\n", fmt::join(quoted_cells, ","));
 }
 
-// Nothing where a value is missing.
+// Returns nothing where a value is missing.
 std::optional<std::string> filled(std::string_view text, const std::map<std::string, std::string>& values) {
   std::string result;
   for (std::size_t at = 0;;) {

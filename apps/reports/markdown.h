@@ -9,7 +9,7 @@
 
 namespace burnish::reports {
 
-/// A table to be filled row by row; `add` expects as many cells as the head has.
+/// A table filled row by row. `add` expects as many cells as the head has.
 class Table {
  public:
   explicit Table(std::vector<std::string> head) : head_(std::move(head)) {}
@@ -18,7 +18,7 @@ class Table {
   bool empty() const noexcept { return rows_.empty(); }
 
   std::string markdown() const;
-  /// Rows of commas; cells that hold a comma or quotes stand in quotes.
+  /// Returns CSV. Cells that hold a comma or quotes stand in quotes.
   std::string csv() const;
 
  private:
@@ -26,14 +26,14 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// The cells of both, one after the other.
+/// Returns the cells of both, one after the other.
 template <class Cells>
 std::vector<std::string> joined(std::vector<std::string> first, const Cells& then) {
   first.insert(first.end(), then.begin(), then.end());
   return first;
 }
 
-/// Each value in fmt's format, such as "{:.3f}".
+/// Formats each value with fmt's format, such as "{:.3f}".
 template <class Values>
 std::vector<std::string> cells(fmt::string_view format, const Values& values) {
   std::vector<std::string> texts;
@@ -41,11 +41,11 @@ std::vector<std::string> cells(fmt::string_view format, const Values& values) {
   return texts;
 }
 
-/// A template with each @name@ replaced by its value. A section, from a line that begins with "## " to the
-/// next, is left out where a value it names is missing. Throws Error where one is missing elsewhere.
+/// Fills a template: each @name@ becomes its value. A section goes from a line that begins with "## " to the next. It
+/// is left out where a value that it names is missing. Throws Error where a value is missing elsewhere.
 std::string fill_template(std::string_view text, const std::map<std::string, std::string>& values);
 
-/// What /proc/cpuinfo calls the processor, and how many threads it runs: "AMD EPYC, 2 threads".
+/// Describes the processor by its name in /proc/cpuinfo and its number of threads: "AMD EPYC, 2 threads".
 std::string processor();
 
 }  // namespace burnish::reports

@@ -1,4 +1,5 @@
-// What a model says of what was measured and it has not seen: nodes, incidences, another scan; light that noise adds.
+// Compares models with measured values that they have not seen: nodes, incidences, another scan. Measures the light
+// that noise adds.
 #include <array>
 #include <cmath>
 #include <map>
@@ -23,9 +24,9 @@ namespace burnish::reports {
 namespace {
 
 constexpr std::size_t kBytes = 16'384, kFewBytes = 2700, kQuickBytes = 1350;
-constexpr int kNodeFetches = 3;  // of nodes, where the page says so
+constexpr int kNodeFetches = 3;  // in fits of nodes, where the page says so
 
-// Of a quick trial few, which are fitted in a tenth of the time.
+// Returns the budget. A quick trial has few bytes, which are fitted in a tenth of the time.
 std::size_t most_bytes(const Page& page) {
   return page.options().quick ? kQuickBytes : kBytes;
 }
@@ -41,7 +42,7 @@ Fit fit_nodes_without(const Source& source, const NodePart& held_out, std::optio
              {.form = std::move(form), .target = FitTarget::nodes, .hold_out = held_out, .score = false});
 }
 
-// Means over what was added.
+// Means over all added figures.
 struct MeanNodes {
   double relative = 0, log_cos = 0;
   int count = 0;
@@ -66,10 +67,11 @@ std::vector<std::string> figures_of(const NodeFigures& figures) {
 
 struct Predictor {
   const char* name;
-  MeanNodes all = {};  // over the materials
+  MeanNodes all = {};  // mean over the materials
 };
 
-// The mean figures of each predictor over both halves of a material's nodes; `rows` gets those of each.
+// Returns the mean figures of each predictor over both halves of a material's nodes. `rows` gets the figures of each
+// half.
 std::vector<NodeFigures> score_halves(const Source& source, const std::string& name, std::uint64_t bytes,
                                       const fs::path& data, std::span<const Predictor> predictors,
                                       Table& rows) {
@@ -99,8 +101,8 @@ std::vector<NodeFigures> score_halves(const Source& source, const std::string& n
   return figures;
 }
 
-// Of every material and half what each predictor says of the nodes of that half: the file's own function and the
-// published models, which know or have learnt them, and ours of the other half.
+// Reports, for every material and half, how well each predictor knows the nodes of that half. The file's own function
+// knows them, and the published models have learnt them. Our second fit sees the other half alone.
 void report_halves(Page& page, const fs::path& data) {
   std::vector<Predictor> predictors{{"the file's function, which knows them"},
                                     {"network"},
@@ -140,7 +142,7 @@ void report_halves(Page& page, const fs::path& data) {
 
 // ---- An incidence by the others
 
-// The table as its owner would have it, had the instrument not stood at one theta_i.
+// Returns the table that its owner would have without the measurements at one theta_i.
 RglTable without_incidence(RglData data, std::size_t left_out) {
   const std::size_t incidences = data.theta_i.size();
   for (RglGrid* grid : {&data.vndf, &data.luminance, &data.spectra}) {
@@ -171,9 +173,9 @@ void report_incidences(Page& page) {
     const RglData& data = std::get<RglTable>(source.brdf).data();
     const MeasuredNodes nodes = measured_nodes(source);
     std::array<MeanNodes, 3> means;
-    // the outermost have no neighbours on one side
+    // The outermost incidences have no neighbours on one side.
     for (std::size_t k = 1; k + 1 < data.theta_i.size() && (k == 1 || !quick); ++k) {
-      if (std::cos(double{data.theta_i[k]}) <= NodeScoring{}.least_cosine) continue;  // none is scored
+      if (std::cos(double{data.theta_i[k]}) <= NodeScoring{}.least_cosine) continue;  // no node is scored
       const NodePart part{NodePart::Kind::incidence, static_cast<std::uint32_t>(k)};
       const MeasuredNodes unseen = nodes_of(nodes, part);
       const RglTable left(without_incidence(data, k));
@@ -219,7 +221,7 @@ struct Scans {
   std::array<const char*, 2> names{"fine", "coarse"};
 };
 
-// What each scan and its fits say of the other as a function.
+// Scores each scan and its fits as predictions of the other scan's function.
 Table repeat_table(const Scans& scans, bool quick) {
   const FigureOptions options{.count = quick ? std::size_t{10'000} : std::size_t{1'000'000}};
   Table table({"predicted", "by", "bytes", "psnr", "ssim", "relative", "log_cos", "rms_log", "rms"});
@@ -247,7 +249,7 @@ Table repeat_table(const Scans& scans, bool quick) {
   return table;
 }
 
-// And at the nodes alone.
+// Scores each scan and its fits at the nodes of the other scan.
 Table repeat_nodes_table(const Scans& scans, std::uint64_t bytes, bool quick) {
   Table table({"nodes of", "nodes", "by its own function", "by the other's", "ours, of the other's function",
                "ours, of the other's nodes"});
@@ -281,8 +283,8 @@ void report_repeat(Page& page, const fs::path& data) {
 
 // ---- Formats whose owners interpolate what was measured
 
-// Of one file each, at the nodes of both halves, what foretells them: the fit of the function, which knows them, or that
-// of the nodes of the other half.
+// Scores predictions of one file of each format at the nodes of both halves. The fit of the function knows these nodes;
+// the fit of nodes sees the other half alone.
 void report_formats(Page& page, const fs::path& data) {
   const auto first_in = [&](const char* folder) {
     const std::vector<fs::path> files = files_in(data / folder);
@@ -334,7 +336,7 @@ void report_noise(Page& page, const std::optional<fs::path>& data) {
     for (const double theta_i : {0, 15, 30, 45, 60}) {
       const Vec3 wi = spherical_direction(radians(theta_i), 0);
       const DirectionalAlbedo own = directional_albedo(function, wi, 2e-3);
-      // the channel that is farthest off, of those that reflect anything
+      // The channel with the largest relative deviation is reported; channels that reflect nothing are left out.
       const auto off = [&](const Fit& made) {
         const std::vector<double> found = directional_albedo(made.ref(), wi, 2e-3).albedo;
         double most = 0;
@@ -384,7 +386,7 @@ void report_order(Page& page, const fs::path& data) {
 
 // ---- Scattered samples
 
-// What fits of the other samples say of each part.
+// Returns the relative error over all parts, each predicted by a fit of the other samples.
 double foretold(const Samples& samples, const FitForm& form, std::span<const Fold> parts) {
   FoldErrors errors;
   std::array<double, 3> f;
@@ -409,7 +411,7 @@ void report_scattered(Page& page, const fs::path& data) {
     const Samples samples = read_paint(data, paint);
     std::vector<Fold> fifths;
     for (std::size_t fold = 0; fold < kFolds; ++fold) fifths.push_back(split_fold(samples.size(), fold));
-    // the outermost incidences have no neighbours on one side
+    // The outermost incidences have no neighbours on one side.
     const MeasuredNodes nodes = measured_nodes(samples);
     std::vector<Fold> incidences(nodes.theta_i.size());
     for (std::size_t i = 0; i < samples.size(); ++i)

@@ -1,4 +1,4 @@
-// How close the OpenPBR fit comes to the best of many random starts, and what a material of glTF keeps beside it.
+// Compares the OpenPBR fit with the best of many random starts, and reports glTF materials fitted to the same sources.
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
@@ -29,12 +29,12 @@ constexpr int kStarts = 200, kQuickStarts = 10;
 constexpr std::size_t kPairs = 20'000;
 constexpr std::uint64_t kPeersSeed = 2;  // fit_openpbr draws its own starts from 1
 
-// Of the processor, all threads together.
+// Returns the seconds of the processor, all threads together.
 double processor_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/// A material that looks like a BRDF, its score and times.
+/// A fitted material, its score and times.
 struct Scored {
   OpenPbrParameters parameters;
   double psnr, seconds, wall = 0;
@@ -55,7 +55,7 @@ struct Row {
 
 const MaterialFitOptions kAlone{.beside = false, .figures = {.count = kPairs}};
 
-// `burnish fit --to openpbr`, its scores among the seconds of the processor.
+// Fits as `burnish fit --to openpbr` does. Scoring is part of the processor's seconds.
 Scored fitted(const Source& source) {
   const double start = processor_seconds();
   const MaterialFit fit = fit_material(source, "openpbr", kAlone);
@@ -63,7 +63,7 @@ Scored fitted(const Source& source) {
           fit.seconds};
 }
 
-// The best of random starts, of the same loss.
+// Returns the best fit from random starts, with the same loss.
 Scored fitted_at_random(const Scorer& scorer, const PicturePairs& pairs, int starts,
                         const OpenPbrFitOptions& options) {
   const double start = processor_seconds();
@@ -72,7 +72,7 @@ Scored fitted_at_random(const Scorer& scorer, const PicturePairs& pairs, int sta
           processor_seconds() - start};
 }
 
-// "sheen, clearcoat", as the asset names them.
+// Returns the asset's extensions without their prefixes: "sheen, clearcoat".
 std::string extensions_of(const GltfMaterial& material) {
   const auto json = gltf_json(material);
   std::vector<std::string> names;
@@ -82,7 +82,7 @@ std::string extensions_of(const GltfMaterial& material) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-// `burnish fit --to gltf`.
+// Fits as `burnish fit --to gltf` does.
 GltfScored gltf_fitted(const Source& source, const Scorer& scorer) {
   const MaterialFit fit = fit_material(source, "gltf", kAlone);
   const MetallicRoughness core = fit_metallic_roughness(scorer.reference()).material;
@@ -92,7 +92,7 @@ GltfScored gltf_fitted(const Source& source, const Scorer& scorer) {
 Row row_of(const std::string& material, const std::string& place, int starts) {
   tell(fmt::format("openpbr: {}", material));
   const Source source = open_source(place, {});
-  // what fit_material fits: of measurements the reciprocal part
+  // A fit sees what fit_material fits: a measurement's reciprocal part.
   const SymmetrizedBrdf symmetrized(source.ref());
   const BrdfRef brdf = is_measurement(source) ? BrdfRef(symmetrized) : source.ref();
   const Scorer scorer(brdf, {.count = kPairs});
@@ -172,7 +172,7 @@ void report_openpbr(const ReportOptions& options) {
   if (options.data && options.wants("merl")) {
     std::vector<std::string> names = row_names(*options.data / "np/codes.csv");
     std::erase_if(names,
-                  [](const std::string& name) { return name.ends_with("_rgb"); });  // of the RGL database
+                  [](const std::string& name) { return name.ends_with("_rgb"); });  // are of the RGL database
     const std::size_t every = options.quick ? 50 : 5;
     std::vector<Row> rows;
     for (std::size_t i = 0; i < names.size(); i += every)

@@ -20,12 +20,12 @@ std::string color(Rgb c) {
   return fmt::format("vec3({}, {}, {})", number(c.r), number(c.g), number(c.b));
 }
 
-// Layers of the network, [Sztrajman 2021], four units a vec4: the kernel's rows, then the bias.
+// Layers of the network [Sztrajman 2021], four units a vec4. The weights hold the kernel's rows, then the bias.
 class Layers {
  public:
   explicit Layers(std::span<const float> weights) : weights_(weights) {}
 
-  // Adds the layer's statements; its outputs are the components of NAME0, NAME1, ...
+  // Returns the layer's statements. Its outputs are the components of NAME0, NAME1, ...
   std::string layer(const std::vector<std::string>& inputs, std::size_t outputs, const std::string& name,
                     bool cut_off) {
     const auto weight = [&](std::size_t i, std::size_t o) {
@@ -59,7 +59,7 @@ std::vector<std::string> components(const std::string& name, std::size_t count) 
   return names;
 }
 
-// wi in the frame that turns the half vector onto the normal [Rusinkiewicz 1998]
+// This code computes wi in the frame that turns the half vector onto the normal [Rusinkiewicz 1998].
 constexpr const char* kDifference =
     "  vec3 h = normalize(wi + wo);\n"
     "  float sine = sqrt(max(h.x * h.x + h.y * h.y, 1e-20));\n"

@@ -8,17 +8,19 @@
 
 namespace burnish::reports {
 
-// GLSL of what factored BRDFs are compared with, what depends on the view alone once a pixel.
+// These functions return GLSL of BRDFs that factored ones are compared with. Terms of the view alone are computed once
+// a pixel.
 
 SurfaceShader shader_of(const Ggx& ggx);
 
-/// f_r = kd / pi + ks s (n·h)^exponent, the power by `pow` or as member w8 of the specular family.
+/// Evaluates f_r = kd / pi + ks s (n·h)^exponent. The power is computed by `pow` or as member w8 of the specular
+/// family.
 SurfaceShader shader_of(const BlinnPhong& phong, bool by_w8);
 
-/// The table as a 3-D texture, filtered linearly between the centres of its entries.
+/// Reads the table as a 3-D texture, filtered linearly between the centres of its entries.
 SurfaceShader shader_of(const HalfDiffTable& table);
 
-/// The weights as constants of the shader, four units a multiplication.
+/// Holds the weights as constants of the shader, four units a multiplication.
 SurfaceShader shader_of(const NeuralBrdf& network);
 
 }  // namespace burnish::reports

@@ -13,8 +13,8 @@ namespace {
 
 constexpr unsigned kGroup = 64, kGroups = 1 << 13;
 
-// Points of an additive sequence in a square within the disk below a unit vector's x and y. What is written keeps the
-// driver from leaving anything out.
+// Evaluates at points of an additive sequence, in a square within the disk of a unit vector's x and y. The sums are
+// written, so the driver cannot leave evaluations out.
 constexpr const char* kProgram = R"(layout(local_size_x = 64) in;
 layout(std430, binding = 0) writeonly buffer burnish_Sums {{ float burnish_sums[]; }};
 uniform int burnish_rounds;
@@ -56,7 +56,7 @@ class Evaluations {
   Evaluations(const Evaluations&) = delete;
   Evaluations& operator=(const Evaluations&) = delete;
 
-  // kGroup * kGroups evaluations a round.
+  // Runs kGroup * kGroups evaluations a round.
   void run(int rounds) const {
     glUseProgram(program_);
     glProgramUniform1i(program_, glGetUniformLocation(program_, "burnish_rounds"), rounds);
@@ -79,7 +79,7 @@ Table evaluation_rates(const std::string& first, const std::vector<FrameMaterial
   std::vector<std::function<void(int)>> tasks;
   for (const FrameMaterial& material : materials) {
     all.push_back(std::make_unique<Evaluations>(material.shader));
-    all.back()->run(1);  // compiles
+    all.back()->run(1);  // compiles the shader
     tasks.emplace_back([evaluations = all.back().get()](int rounds) { evaluations->run(rounds); });
   }
   const std::vector<Times> times = time_rounds(tasks, repetitions);

@@ -8,9 +8,9 @@
 
 namespace burnish::reports {
 
-/// Billions of evaluations a second of each material in a compute shader, of random pairs that it makes itself: the
-/// most, the median in brackets, and how many times the first one's time each takes; `first` names it. Needs a
-/// GlContext.
+/// Returns a table of billions of evaluations a second of each material in a compute shader, which makes its own random
+/// pairs. It has the most, the median in brackets, and the ratio of each time to the first material's. `first` names
+/// that material. Needs a GlContext.
 Table evaluation_rates(const std::string& first, const std::vector<FrameMaterial>& materials,
                        int repetitions);
 

@@ -12,7 +12,7 @@
 
 namespace burnish {
 
-// The files of templates/.
+// Returns the files of templates/.
 std::span<const EmbeddedFile> report_templates();
 
 namespace reports {

@@ -20,30 +20,30 @@ namespace fs = std::filesystem;
 struct ReportOptions {
   fs::path folder;                 ///< pages and rows go here, figures to the folder `figures` beside it
   std::optional<fs::path> data;    ///< the folder of measurements
-  std::string commit = "unknown";  ///< of the sources, for the heads of pages
-  bool quick = false;   ///< a few materials, samples and repetitions: whether it runs, not what it gives
-  std::string section;  ///< alone; empty: all
+  std::string commit = "unknown";  ///< commit of the sources, for the heads of pages
+  bool quick = false;              ///< a few materials, samples and repetitions: a trial run, not for results
+  std::string section;             ///< the only section to report; empty: all
 
   bool wants(std::string_view name) const { return section.empty() || section == name; }
 };
 
-/// A page: a template of the same name, its values, and what lies beside it. Every file is written under a
-/// temporary name and renamed, and told on standard output.
+/// A page: a template of the same name, its values, and the files beside it. Each file is written under a temporary
+/// name, renamed, and named on standard output.
 class Page {
  public:
-  /// Of the template NAME.md.in, or of another one's.
+  /// Uses the template NAME.md.in, or that of the name `text`.
   Page(ReportOptions options, std::string name, std::string text = {});
 
   const ReportOptions& options() const noexcept { return options_; }
 
-  /// The value of @mark@. `machine` and `commit` have one.
+  /// Returns the value of @mark@. `machine` and `commit` are set from the start.
   std::string& operator[](const std::string& mark) { return values_[mark]; }
-  /// PAGE-GROUP.csv.
+  /// Writes PAGE-GROUP.csv.
   void write_rows(const std::string& group, const Table& rows) const;
-  /// A file of the folder of figures.
+  /// Writes a file of the folder of figures.
   void write_figure(const std::string& name, std::string_view bytes) const;
   void write_plot(const std::string& name, const Plot& plot) const;
-  /// The page itself, with `seconds` since its beginning.
+  /// Writes the page itself. `seconds` is the time since its construction.
   void write();
 
  private:
@@ -53,7 +53,7 @@ class Page {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// One for each name of burnish_reports; they throw Error.
+// Each function is a NAME of burnish_reports. They throw Error.
 void report_accuracy(const ReportOptions& options);
 void report_area_lights(const ReportOptions& options);
 void report_cost(const ReportOptions& options);
@@ -65,11 +65,10 @@ void report_sampling(const ReportOptions& options);
 void report_shaders(const ReportOptions& options);
 void report_surfaces(const ReportOptions& options);
 
-/// The `exponent input` line of every pixel of a sphere, for a simulation of a unit of hw/, to standard
-/// output.
+/// Prints the line `exponent input` of every pixel of a sphere on standard output, for a simulation of a unit of hw/.
 void print_sphere_questions(const std::string& unit);
-/// The answers of units, given as NAME=FILE, beside c^e and their differences: hardware_sphere.png; the
-/// largest difference of each to standard output.
+/// Draws hardware_sphere.png: c^e, the answers of units given as NAME=FILE, and their differences. Prints the largest
+/// difference of each unit.
 void draw_sphere_answers(const fs::path& folder, const std::vector<std::string>& units);
 
 class Stopwatch {
@@ -82,20 +81,20 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Seconds that a task took.
+/// The seconds that a task took.
 struct Times {
   double least = 0, median = 0;
 };
-/// Each task `repetitions` times, at least once, all tasks in turn, so that a busy moment meets them all.
+/// Runs each task `repetitions` times, at least once. All tasks run in turn, so a busy moment slows all of them down.
 std::vector<Times> time_in_turns(std::span<const std::function<void()>> tasks, int repetitions);
 
-/// The files of a folder by name.
+/// Returns the files of a folder, sorted by name.
 std::vector<fs::path> files_in(const fs::path& folder);
 
-/// The first column of a CSV file.
+/// Returns the first column of a CSV file.
 std::vector<std::string> row_names(const fs::path& file);
 
-/// A line on standard error about what takes time.
+/// Prints a line on standard error about work that takes time.
 void tell(const std::string& what);
 
 }  // namespace burnish::reports

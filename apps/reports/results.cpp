@@ -1,4 +1,4 @@
-// The fit of one lobe: scattered samples of an anisotropic GGX, measurements, and a table of the MERL size.
+// Measures the fit of one lobe: scattered samples of an anisotropic GGX, measurements, and a table of the MERL size.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,8 +30,8 @@ namespace {
 
 constexpr std::size_t kHeldOut = 100'000;
 
-// Mean |ln f - ln model| over held-out pairs, all of them, or those with h within `cap` radians of the
-// normal.
+// Returns the mean |ln f - ln model| over held-out pairs. With `cap` only pairs with h within `cap` radians of the
+// normal count.
 double mean_abs_log(BrdfRef truth, const FactoredBrdf& model, std::optional<double> cap = {}) {
   std::vector<double> f(3), g(3);
   double sum = 0;
@@ -46,7 +46,7 @@ double mean_abs_log(BrdfRef truth, const FactoredBrdf& model, std::optional<doub
   return sum / static_cast<double>(count);
 }
 
-// Largest |f(wi, wo) - f(wo, wi)|.
+// Returns the largest |f(wi, wo) - f(wo, wi)|.
 double asymmetry_of(const FactoredBrdf& model) {
   double asymmetry = 0;
   std::vector<double> f(3), g(3);
@@ -87,7 +87,7 @@ Table warps_table(BrdfRef truth, const Source& source) {
   return table;
 }
 
-// Fits over decades of `smooth`, to all samples and to those outside a cap around the normal.
+// Reports fits over decades of `smooth`, to all samples and to those outside a cap around the normal.
 void report_smoothness(Page& page, BrdfRef truth, const Samples& samples) {
   constexpr int kFirstDecade = -11;
   const std::size_t decades = page.options().quick ? 2 : 9;
@@ -182,7 +182,7 @@ void report_rgl(Page& page, const fs::path& data) {
 // ---- The paints of the original paper
 
 struct PaintModel {
-  const char *name, *expression;  // none: resampled neighbours
+  const char *name, *expression;  // expression null: resampled neighbours
 };
 constexpr std::array kPaintModels{PaintModel{"neighbours, pbrt-v2's space", nullptr},
                                   PaintModel{"neighbours, half/difference space", nullptr},

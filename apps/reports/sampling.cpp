@@ -1,4 +1,4 @@
-// Ways of drawing directions on the RGL materials: weights, variance under environments, time.
+// Compares ways of drawing directions on the RGL materials: weights, variance under environments, time.
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -28,14 +28,14 @@ namespace burnish::reports {
 
 namespace {
 
-// Of this process, which others cannot slow down as they do the clock on the wall.
+// Returns the seconds of this process. Other processes do not slow them down, unlike the clock on the wall.
 double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-// What is fitted: the best of few bytes, and what a shader reads twice.
+// A form of fit: the best one of few bytes, and one that a shader reads twice.
 struct Form {
-  const char *name, *command;  // of marks and files, and as it is written
+  const char *name, *command;  // the name in marks and files, and the command line
   Budget budget;
 };
 const std::array kForms{Form{"models", "burnish fit --target function --budget 2700", {.bytes = 2700}},
@@ -43,7 +43,7 @@ const std::array kForms{Form{"models", "burnish fit --target function --budget 2
                              "burnish fit --target function --budget 16384 --fetches 2",
                              {.bytes = 16'384, .fetches = 2}}};
 
-// A BRDF with all that draws for it.
+// A BRDF with every way to draw directions for it.
 struct Drawn {
   BrdfRef brdf;
   Drawers drawers;
@@ -52,7 +52,7 @@ struct Drawn {
   Drawn(BrdfRef of, const RglTable& table) : brdf(of), drawers(of, table), proportional(of) {}
 };
 
-// A model, evaluated as a renderer does.
+// A model, evaluated as in a renderer.
 struct Model {
   FactoredBrdf factors;
   FactoredEvaluator evaluator;
@@ -69,7 +69,7 @@ struct Material {
   RglTable table;
   Measurement measurement;
   Drawn measured;
-  std::deque<Model> models;  // of each form
+  std::deque<Model> models;  // one for each form
 
   Material(std::string called, RglTable of)
       : name(std::move(called)), table(std::move(of)), measurement{&table}, measured(measurement, table) {}
@@ -97,10 +97,10 @@ Materials load_materials(const fs::path& folder, bool quick) {
   return materials;
 }
 
-// How much is drawn.
+// The numbers of draws, turns, samples and runs.
 struct Effort {
   int draws = 50'000, turns = 8, samples = 144, timed_runs = 3;
-  int max_samples = 4096, reference_samples = 4096;  // of the error against samples
+  int max_samples = 4096, reference_samples = 4096;  // for the error against samples
 };
 constexpr Effort kQuick{
     .draws = 1000, .turns = 1, .samples = 16, .timed_runs = 1, .max_samples = 64, .reference_samples = 256};
@@ -108,7 +108,7 @@ constexpr Effort kQuick{
 // ---- Weights
 
 struct Weights {
-  double second_moment = 0, largest = 0, lost = 0;  // relative to the mean, its square; share
+  double second_moment = 0, largest = 0, lost = 0;  // relative to the mean, the moment to its square; a share
 };
 
 Weights weights_of(BrdfRef brdf, SamplerRef sampler, Vec3 wo, int draws) {
@@ -153,7 +153,7 @@ Table weights_table(const Materials& materials, std::size_t form, const Effort& 
   return table;
 }
 
-// What a BRDF reflects towards wo, the root mean square of the channels.
+// Returns the albedo of a BRDF towards wo, as the root mean square of the channels.
 double albedo_of(BrdfRef brdf, Vec3 wo) {
   std::vector<double> f(brdf.channels());
   double sum = 0;
@@ -162,7 +162,7 @@ double albedo_of(BrdfRef brdf, Vec3 wo) {
   return sum;
 }
 
-// Marks and files of a form; those of the first have no name.
+// Returns the name of a mark or file of a form. Names of the first form have no suffix.
 std::string mark_of(const std::string& what, std::size_t form, char between) {
   return form == 0 ? what : fmt::format("{}{}{}", what, between, kForms[form].name);
 }
@@ -194,13 +194,13 @@ void report_horizon(Page& page, const Materials& materials, std::size_t form, co
 
 constexpr int kPictureSize = 24;
 
-// Of each density.
+// The variance by each density.
 struct Variance {
   std::vector<double> of_picture;  // relative to the picture's mean square
-  std::vector<double> of_pixels;   // to each pixel's square
+  std::vector<double> of_pixels;   // relative to each pixel's square
 };
 
-// Over all turns of an environment; `guide` draws the directions to integrate over.
+// Returns the variance over all turns of an environment. `guide` draws the directions to integrate over.
 Variance variance_of(BrdfRef brdf, SamplerRef guide, std::span<const SamplerRef> densities,
                      const Environment& environment, const Effort& effort) {
   Variance sum{std::vector<double>(densities.size()), std::vector<double>(densities.size())};
@@ -215,7 +215,7 @@ Variance variance_of(BrdfRef brdf, SamplerRef guide, std::span<const SamplerRef>
       total += value;
       lit += value > 0;
     }
-    // one tenth of the mean, so that no black pixel decides
+    // One tenth of the mean is added, so that no black pixel dominates.
     const double floor = 0.1 * total / static_cast<double>(lit);
     for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
       const double value = mean.pixels[i];
@@ -231,7 +231,7 @@ Variance variance_of(BrdfRef brdf, SamplerRef guide, std::span<const SamplerRef>
   return sum;
 }
 
-// CPU time of one draw and evaluation, microseconds; one thread.
+// Returns the CPU time of one draw and evaluation in microseconds, on one thread.
 double time_of(BrdfRef brdf, SamplerRef sampler, const Effort& effort) {
   const ThreadLimit one(1);
   double best = 1e9;
@@ -243,9 +243,9 @@ double time_of(BrdfRef brdf, SamplerRef sampler, const Effort& effort) {
   return 1e6 * best / (64 * kPi / 4 * 32 * 32);
 }
 
-// How ours compares with each density, over the materials seen.
+// Compares our variance and time with those of each density, over the materials seen.
 struct Comparison {
-  std::array<double, kDensities> ratio{}, worst{}, best_ratio{}, pixel_ratio{};  // of variances
+  std::array<double, kDensities> ratio{}, worst{}, best_ratio{}, pixel_ratio{};  // ratios of variances
   std::array<double, kWays> time{}, timed_ratio{};
 
   void add(const Variance& variance, const std::array<double, kWays>& microseconds, double share) {
@@ -278,7 +278,7 @@ struct Comparison {
   }
 };
 
-// Of the models of a form, or of the measurements.
+// Reports the models of a form, or the measurements.
 void report_variance(Page& page, const Materials& materials, std::optional<std::size_t> form,
                      const Effort& effort) {
   const std::string what = form ? kForms[*form].name : "measurements";
@@ -345,7 +345,7 @@ void report_lobe_choice(Page& page, const Materials& materials, const Effort& ef
 // ---- Error against the number of samples
 
 struct ErrorRun {
-  double error, seconds;  // root mean square over the picture's; of the processor
+  double error, seconds;  // the root mean square relative to the picture's; of the processor
 };
 
 ErrorRun error_of(BrdfRef brdf, SamplerRef sampler, const Environment& environment,
@@ -371,7 +371,7 @@ void report_errors(Page& page, const Material& m, const Effort& effort) {
   double energy = 0;
   for (const float value : reference.pixels) energy += value * value;
 
-  // every way, and ours once more from points in a grid
+  // Each way has a line. Ours has a second one, with points in a grid.
   Plot by_count{.title = fmt::format("{} under \"{}\"", m.name, studio.name),
                 .x_label = "samples a pixel",
                 .y_label = "rms error / rms value",
@@ -404,7 +404,7 @@ void report_errors(Page& page, const Material& m, const Effort& effort) {
   page.write_plot("sampling-error-time", by_time);
 }
 
-// Sixteen samples a pixel, all ways, beside the picture they approach.
+// Draws the pictures by each way with sixteen samples a pixel, beside the picture that they converge to.
 void draw_noise(const Page& page, const Materials& materials) {
   ContactSheet sheet{.title = "16 samples a pixel, environment \"studio\"", .column_labels = {"reference"}};
   for (const char* way : kWayNames) sheet.column_labels.push_back(way);

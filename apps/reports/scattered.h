@@ -15,30 +15,30 @@
 
 namespace burnish::reports {
 
-/// The paints of the original paper, 1439 scattered directions each.
+/// The paints of the original paper, with 1439 scattered directions each.
 inline constexpr std::array<const char*, 3> kPaints = {"cayman", "mystique", "krylon_blue"};
 
-/// One paint's bands averaged to three: 400 to 490, 500 to 590, 600 to 700 nm.
+/// Reads one paint and averages its bands to three: 400 to 490, 500 to 590, 600 to 700 nm.
 Samples read_paint(const fs::path& data, const char* name);
 
 inline constexpr std::size_t kFolds = 5;
 
-/// Rows to fit and rows to test; row i is tested in fold i mod kFolds.
+/// The rows to fit and the rows to test. Row i is tested in fold i mod kFolds.
 struct Fold {
   std::vector<std::size_t> training, test;
 };
 Fold split_fold(std::size_t rows, std::size_t fold);
 
-/// The paper's model with r(theta_d) and m(theta_m) beside it.
+/// The paper's model with the further factors r(theta_d) and m(theta_m).
 inline constexpr const char* kScatteredModel = "p(wo) q(h) m(theta_m) r(theta_d) p(wi)";
 
-/// Samples as `burnish fit` opens them.
+/// Opens samples as `burnish fit` does.
 Source source_of(Samples samples);
 
-/// Fits one lobe; smoothness by cross-validation among the samples of the source.
+/// Fits one lobe. Smoothness is chosen by cross-validation among the samples of the source.
 FactoredBrdf fit_scattered(const Source& source, const std::string& expression);
 
-/// Errors of the tested rows of all folds, at the floors 1e-3 and 1e-5.
+/// The errors of the tested rows of all folds, at the floors 1e-3 and 1e-5.
 struct FoldErrors {
   std::array<double, 2> sum{}, sum_sq{};  ///< of |ln((f + floor) / (model + floor))| and of its square
   std::size_t count = 0;

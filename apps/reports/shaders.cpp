@@ -1,5 +1,5 @@
-// Precision of generated shaders on the OpenGL at hand and in a browser, their cost, and light from all
-// around.
+// Measures the precision of generated shaders on this machine's OpenGL and in a browser, their cost, and environment
+// lighting.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -25,7 +25,7 @@ namespace {
 
 const std::vector<std::string> kVariants{"exact, float", "exact, half", "hardware, float", "hardware, half"};
 
-// f of each pair, three components.
+// Returns f of each pair, three components.
 std::vector<double> truth_of(const FactoredBrdf& brdf, std::span<const DirectionPair> pairs) {
   const auto channels = brdf.channels();
   std::vector<double> truth(3 * pairs.size());

@@ -1,4 +1,4 @@
-// What a surface costs beside a uniform model, and what its mip levels are worth.
+// Measures the cost of a surface against a uniform model, and the accuracy of its mip levels.
 #include <array>
 #include <cmath>
 #include <functional>
@@ -37,7 +37,7 @@ FileBytes bytes_of(std::string_view text) {
   return {.name = "scene", .bytes = {first, first + text.size()}};
 }
 
-// The scene's materials, each fitted with one lobe, their shares as weights.
+// The scene's materials, each fitted with one lobe, with their shares as weights.
 struct Surfaces {
   SpatialBrdf flat, bumpy, widened;
 };
@@ -78,7 +78,7 @@ Surfaces surfaces_of(const SurfaceScene& scene) {
   return {std::move(flat), std::move(bumpy), std::move(widened)};
 }
 
-// f cos of a whole level under one light.
+// Returns f cos of a whole level under one light.
 Image lit_level(const SpatialBrdf& surface, std::size_t level, Vec3 light, Vec3 view) {
   const SurfaceMap& map = surface.maps().weights.front();
   const int width = map.level_width(level), height = map.level_height(level);
@@ -96,8 +96,8 @@ Image lit_level(const SpatialBrdf& surface, std::size_t level, Vec3 light, Vec3 
   return image;
 }
 
-// The psnr of a level's pictures against averages of full ones, all lights together; or of means of 4^finer samples
-// of a level that is so much finer.
+// Returns the psnr of a level's pictures against averages of full pictures, all lights together. With `finer` the
+// pictures are means of 4^finer samples of a level that is finer by so many steps.
 double level_psnr(const SpatialBrdf& surface, const SurfaceScene& scene, std::size_t level,
                   std::size_t finer = 0) {
   double sum = 0;
@@ -141,8 +141,8 @@ Table frames_table(const Surfaces& surfaces, int repetitions) {
   return frame_times("surfaces", "the uniform model", materials, {1, 4}, repetitions);
 }
 
-// What a pair of directions at a place costs beside the uniform model of that place, and what finding a place does; on
-// one thread, one by one.
+// Returns the cost of a pair of directions at a place, beside a pair of the uniform model, and the cost of finding a
+// place. Runs one by one on one thread.
 Table evaluations_table(const Surfaces& surfaces, int turns) {
   constexpr std::size_t kPairs = 1 << 16;
   const std::vector<DirectionPair> pairs = draw_pairs(kPairs, 1, false);
