@@ -1,4 +1,4 @@
-// burnish-mpi fit-surface: what `burnish fit-surface` does, by the ranks that mpirun or srun starts.
+// burnish-mpi fit-surface does the same as `burnish fit-surface`, with the ranks that mpirun or srun starts.
 #include <exception>
 
 #include <fmt/core.h>
@@ -24,7 +24,7 @@ int run(int argc, char** argv) {
                  burnish::short_message(error.what()));
     return 2;
   } catch (const std::exception& error) {
-    // the other ranks would wait for this one
+    // Without the abort, the other ranks would wait for this one.
     fmt::print(stderr, "burnish-mpi: {}\n", burnish::short_message(error.what()));
     MPI_Abort(MPI_COMM_WORLD, 1);
   }

@@ -11,9 +11,9 @@ namespace burnish::cli {
 namespace {
 
 constexpr int kTag = 21;
-constexpr std::size_t kPiece = 1 << 28;  // counts of MPI are ints
+constexpr std::size_t kPiece = 1 << 28;  // MPI takes counts as int
 
-// Calls use(offset, count) for pieces of so many bytes.
+// Calls use(offset, count) for pieces of at most kPiece bytes.
 template <class Use>
 void in_pieces(std::size_t size, const Use& use) {
   for (std::size_t at = 0; at < size; at += kPiece) use(at, static_cast<int>(std::min(kPiece, size - at)));

@@ -4,7 +4,7 @@
 
 namespace burnish::cli {
 
-/// The ranks of MPI's world [MPI]. One at a time, while MPI is initialized. Messages of any size.
+/// The ranks of MPI's world [MPI]. Make one crew at a time, while MPI is initialized. Messages may have any size.
 class MpiCrew : public FitCrew {
  public:
   MpiCrew();

@@ -1,4 +1,5 @@
-// What JavaScript calls: a request as JSON and bytes in, a reply as JSON and blobs out. One at a time.
+// JavaScript calls these functions: a request as JSON and bytes in, a reply as JSON and blobs out. One call runs at a
+// time.
 #include <cstdint>
 #include <new>
 #include <optional>
@@ -26,7 +27,7 @@ burnish::wasm::Reply reply;
 
 extern "C" {
 
-/// Memory for the bytes of the next call; null where there is none.
+/// Returns memory for the bytes of the next call, or null where there is none.
 EMSCRIPTEN_KEEPALIVE std::byte* burnish_buffer(std::size_t size) {
   try {
     buffer = std::vector<std::byte>(size);
@@ -36,14 +37,14 @@ EMSCRIPTEN_KEEPALIVE std::byte* burnish_buffer(std::size_t size) {
   }
 }
 
-/// 1 where there is a reply, 0 where burnish_text is an error's one line.
+/// Runs a request. Returns 1 where there is a reply, 0 where burnish_text is an error's one line.
 EMSCRIPTEN_KEEPALIVE int burnish_call(const char* request) {
   try {
     reply = {};
     reply = burnish::wasm::run(
         {.arguments = burnish::wasm::Json::parse(request), .bytes = std::exchange(buffer, {})},
         [caller = std::this_thread::get_id()](std::string_view stage, double fraction) {
-          // other threads know no JavaScript to tell
+          // Other threads have no JavaScript function to report to.
           if (std::this_thread::get_id() == caller) burnish_progress(std::string(stage).c_str(), fraction);
         });
     return 1;
@@ -72,7 +73,7 @@ EMSCRIPTEN_KEEPALIVE std::size_t burnish_blob_size(std::size_t i) {
   return reply.blobs[i].size();
 }
 
-/// Gives the reply's memory back.
+/// Frees the reply's memory.
 EMSCRIPTEN_KEEPALIVE void burnish_clear() {
   reply = {};
 }

@@ -1,4 +1,5 @@
-// Parts of the library that this build leaves out, where others of its parts call them: whoever asks for them is told.
+// These parts of the library are left out of this build, while other parts call them. A caller gets an Error that says
+// so.
 #include <burnish/error.h>
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/fitting/baselines/negative_lobes.h>

@@ -16,10 +16,10 @@ namespace burnish::wasm {
 
 namespace {
 
-constexpr double kCoarsest = 64;  // level of detail: that of one texel
+constexpr double kCoarsest = 64;  // the level of detail with one texel
 constexpr std::size_t kMaxEntries = 100'000;
 
-// The first words of a file's rows.
+// Returns the first words of a file's rows.
 std::vector<std::string> row_names(const FileBytes& file) {
   std::vector<std::string> names;
   for (TextReader reader(file); names.size() < kMaxEntries && reader.next_content_line();)
@@ -27,7 +27,7 @@ std::vector<std::string> row_names(const FileBytes& file) {
   return names;
 }
 
-// A file of several materials, of which the one named is opened, or the first.
+// Opens the named material of a file with several, or the first one.
 Opened open_entry(std::string file, std::vector<std::string> names, std::string wanted, const auto& parse) {
   if (wanted.empty()) {
     if (names.empty()) throw Error::in_file(file, "at least one material", "none");
@@ -60,7 +60,7 @@ Opened open_surface(const FileBytes& file) {
   return {std::move(mean), std::move(surface), {}};
 }
 
-// Codes, and behind them their decoder.
+// Opens codes that are followed by their decoder.
 Opened open_np(const FileBytes& file, std::size_t decoder_at, const std::string& entry) {
   if (decoder_at > file.bytes.size()) throw Error::in_file(file.name, "a decoder behind the codes", "none");
   const auto cut = file.bytes.begin() + static_cast<std::ptrdiff_t>(decoder_at);

@@ -13,15 +13,15 @@
 
 namespace burnish::wasm {
 
-/// What a file was. Of a surface the source is its mean: one texel of all.
+/// An opened file. The source of a surface is its mean: the one texel of its coarsest level.
 struct Opened {
   Source source;
   std::optional<SurfaceModel> surface;
-  std::vector<std::string> entries;  ///< names of what a file of several holds, of which the source is one
+  std::vector<std::string> entries;  ///< names of a file's materials, where several; one is the source
 };
 
-/// The file as the request's arguments say: "entry" names one of several materials, "decoderAt" says how many bytes are
-/// codes of Neural Processes, behind which their decoder stands. Throws Error as the readers do.
+/// Opens a file by the request's arguments: "entry" names one of several materials. "decoderAt" is the number of bytes
+/// of Neural Processes' codes; their decoder follows. Throws Error as the readers do.
 Opened open_bytes(FileBytes file, const Json& arguments, const OpenOptions& options);
 
 }  // namespace burnish::wasm

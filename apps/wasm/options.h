@@ -18,8 +18,8 @@
 
 namespace burnish::wasm {
 
-/// Options of a verb as scripts give them: of what names and kinds, said of what is not. `own` are what the package
-/// itself adds to a request. Methods throw Error, "VERB: expected ...".
+/// A verb's options from scripts. The constructor refuses unknown names, and readers refuse values of the wrong kind.
+/// `own` are names that the package itself adds to a request. Methods throw Error, "VERB: expected ...".
 class Options {
  public:
   using Json = nlohmann::ordered_json;
@@ -35,13 +35,13 @@ class Options {
                                 expected_one_of(std::vector(names.begin(), names.end()), item.key())));
   }
 
-  /// None where nothing, or null, is given.
+  /// Returns null where the option is missing or null.
   const Json* found(const char* name) const {
     const auto place = object_.find(name);
     return place == object_.end() || place->is_null() ? nullptr : &*place;
   }
 
-  /// What is given, where something is.
+  /// Sets `to` where the option is given.
   void read(const char* name, bool& to) const {
     if (const Json* value = of_kind(name, "true or false", &Json::is_boolean)) to = value->get<bool>();
   }
@@ -81,7 +81,7 @@ class Options {
     return otherwise;
   }
 
-  /// "VERB: expected WHAT, found VALUE".
+  /// Returns the error "VERB: expected WHAT, found VALUE".
   Error expected(std::string_view what, const Json& value) const {
     std::string found = value.dump(-1, ' ', true, Json::error_handler_t::replace);
     return Error(fmt::format("{}: expected {}, found {}", verb_, what, found.substr(0, 40)));

@@ -92,7 +92,7 @@ std::vector<float> floats_of(const std::vector<std::byte>& bytes) {
   return values;
 }
 
-/// What is known without a report.
+/// Returns the facts that need no report.
 Json summary_of(const Opened& opened) {
   const Source& source = opened.source;
   const BrdfRef ref = source.ref();
@@ -135,7 +135,7 @@ Reply open(Request request) {
       throw Error(fmt::format("open: expected a part such as transmission-front, found {}", in_quotes(part)));
   }
   given.text("entry");  // read by open_bytes: a text here
-  // no file of a light is at hand here
+  // The caller has no files of lights, so only the names serve.
   constexpr std::array<std::string_view, 4> kLights{"E", "D50", "D65", "A"};
   if (std::ranges::find(kLights, options.illuminant) == kLights.end())
     throw Error(
@@ -152,7 +152,7 @@ Reply open(Request request) {
     return open_bytes({a.value("name", "file"), std::move(request.bytes)}, a, options);
   };
   const auto [place, added] = materials().insert_or_assign(a.at("id").get<int>(), open_it());
-  // names need not be UTF-8
+  // Names may be other than UTF-8, so bad bytes are replaced.
   return {.json = summary_of(place->second).dump(-1, ' ', false, Json::error_handler_t::replace),
           .blobs = {}};
 }
@@ -164,7 +164,7 @@ Reply info(const Request& request) {
   return {.json = cli::info_json(report_on(source), cli::nodes_of(source)), .blobs = {}};
 }
 
-// Directions n x 3, those to the light before those to the viewer; values n x channels, NaN where none is known.
+// Evaluates f. `bytes` are directions n x 3, all wi before all wo. Returns values n x channels, NaN where unknown.
 Reply evaluate(const Request& request) {
   const Source& source = material(request.arguments);
   const BrdfRef brdf = source.ref();
@@ -200,8 +200,8 @@ Reply evaluate(const Request& request) {
   return {.json = Json{{"channels", channels}}.dump(), .blobs = {bytes_of(result)}};
 }
 
-// Of light from theta_i (radians) at azimuth phi.
-// A hemisphere of which more is unknown has no albedo.
+// The albedo of light from theta_i (radians) at azimuth phi is NaN where more of the hemisphere than this share is
+// unknown.
 constexpr double kAllUnknown = 0.999;
 
 Reply albedo(const Request& request) {
@@ -221,7 +221,7 @@ Reply albedo(const Request& request) {
   return {.json = Json{{"channels", source.ref().channels()}}.dump(), .blobs = {bytes_of(result)}};
 }
 
-// Along a row of theta_d, what lies beyond the horizon or is unknown takes the nearest value that is known.
+// Fills values beyond the horizon or unknown with the nearest known value, along a row of theta_d.
 void fill_unknown(std::span<float> values, std::span<const std::uint8_t> known, std::size_t channels,
                   std::size_t stride) {
   const std::size_t count = known.size();
@@ -239,7 +239,7 @@ void fill_unknown(std::span<float> values, std::span<const std::uint8_t> known, 
   }
 }
 
-// Cells of one phi_d: centres [theta_d][theta_h].
+// Returns the pairs at the centres of cells of one phi_d: [theta_d][theta_h].
 std::vector<DirectionPair> layer_pairs(std::size_t thetas_h, std::size_t thetas_d, double phi_h,
                                        double phi_d) {
   std::vector<DirectionPair> pairs;
@@ -254,12 +254,12 @@ std::vector<DirectionPair> layer_pairs(std::size_t thetas_h, std::size_t thetas_
   return pairs;
 }
 
-// Centres of cells: theta_h = ((x + 1/2) / thetaH)^2 pi/2, theta_d = (y + 1/2) / thetaD pi/2,
-// phi_d = (z + 1/2) / phiD 2 pi.
+// Evaluates at centres of cells: theta_h = ((x + 1/2) / thetaH)^2 pi/2, theta_d = (y + 1/2) / thetaD pi/2, phi_d = (z +
+// 1/2) / phiD 2 pi.
 Reply volume(const Request& request, const Progress& progress) {
   const BrdfRef brdf = material(request.arguments).ref();
   const Options given("volume", request.arguments, {"thetaH", "thetaD", "phiD", "phiH"}, {"verb", "id"});
-  constexpr std::uint64_t kMinCells = 2, kMaxCells = 512;  // a side
+  constexpr std::uint64_t kMinCells = 2, kMaxCells = 512;  // along a side
   std::array<std::size_t, 3> size{90, 90, 180};
   given.read("thetaH", size[0], kMinCells, kMaxCells);
   given.read("thetaD", size[1], kMinCells, kMaxCells);
@@ -294,7 +294,8 @@ Json size_of(const RglGrid& grid) {
   return {grid.width, grid.height};
 }
 
-// What a measurement is interpolated from, so that a GPU can do the same; null of what has no such table.
+// Returns the table that a measurement is interpolated from, so that a GPU can do the same. Returns null for other
+// sources.
 Reply table(const Request& request) {
   const Source& source = material(request.arguments);
   if (const auto* cells = std::get_if<HalfDiffTable>(&source.brdf))
@@ -323,7 +324,7 @@ Reply table(const Request& request) {
   return {};
 }
 
-// The model's file comes back: whoever asked opens it.
+// Fits a model and returns its file, which the caller opens.
 Reply fit_material(const Request& request, const Progress& progress) {
   const Source& source = material(request.arguments);
   FitOptions options =
@@ -337,7 +338,7 @@ Reply fit_material(const Request& request, const Progress& progress) {
   return {.json = std::move(report), .blobs = {std::move(file)}};
 }
 
-// A number or a list of them.
+// Returns the numbers of a number or of a list.
 std::vector<double> numbers(const Json& value) {
   const std::vector<Json> list = value.is_array() ? value.get<std::vector<Json>>() : std::vector{value};
   std::vector<double> result;
@@ -349,7 +350,7 @@ std::vector<double> numbers(const Json& value) {
   return result;
 }
 
-// A number for all channels or one a channel, times the scale.
+// Multiplies the scale by a number, or by one number for each channel.
 void multiply(std::vector<double>& scale, const Json& by) {
   const std::vector<double> factors = numbers(by);
   if (factors.size() != 1 && factors.size() != scale.size())
@@ -357,7 +358,7 @@ void multiply(std::vector<double>& scale, const Json& by) {
   for (std::size_t c = 0; c < scale.size(); ++c) scale[c] *= factors[factors.size() == 1 ? 0 : c];
 }
 
-// A model with other colours, widths and scales and a Lambertian part; its file comes back, as a fit's does.
+// Changes a model's colours, widths and scales, and adds a Lambertian part. Returns its file, as a fit does.
 Reply edit(const Request& request) {
   const Json& how = request.arguments.at("edit");
   const Options given("edit", how, {"scale", "hue", "roughness", "diffuse"});
@@ -367,7 +368,7 @@ Reply edit(const Request& request) {
                                     {.hue = numbers(how.value("hue", Json(0))), .roughness = roughness});
   std::vector<Lobe> lobes(model.lobes().begin(), model.lobes().end());
   if (const auto scale = how.find("scale"); scale != how.end()) {
-    // a list of lists is one a lobe
+    // A list of lists has an element for each lobe.
     const bool each =
         scale->is_array() && std::ranges::any_of(*scale, [](const Json& s) { return s.is_array(); });
     if (each && scale->size() != lobes.size())
@@ -410,7 +411,7 @@ Reply compare(const Request& request) {
   return {.json = to_json(compare_models(scorer, models, measured), measured), .blobs = {}};
 }
 
-// The scored pictures, RGB bytes: those of the reference, then those of the model under its exposure.
+// Returns the scored pictures in RGB bytes: the reference's, then the model's under the reference's exposure.
 Reply images(const Request& request) {
   const Json& a = request.arguments;
   const Options given("images", a, {"symmetrize", "size"}, {"verb", "id", "model"});
@@ -444,14 +445,15 @@ void add_textures(std::span<const ShaderTexture> textures, Json& list, Reply& re
                     {"depth", t.depth},
                     {"channels", t.channels},
                     {"format", to_string(t.format)}});
-    // browsers pack floats as rgb9e5 each in its own way, some wrongly: packed here
+    // Floats are packed to rgb9e5 here, since browsers pack them in different ways, some wrongly.
     reply.blobs.push_back(bytes_of(t.format == TableFormat::rgb9e5
                                        ? pack(t.format, t.channels, t.values)
                                        : pack(TableFormat::single, t.channels, t.values)));
   }
 }
 
-// The same of a surface; its maps, four components of bytes or halves, follow with a blob a level.
+// Returns the shader of a surface and its textures. Its maps, four components of bytes or halves, follow with a blob
+// for each level.
 Reply surface_shader_of(const Request& request, const ShaderOptions& options) {
   const SpatialShader made = generate_shader(surface_of(request.arguments).brdf, options);
   Reply reply;
@@ -480,7 +482,7 @@ Reply surface_shader_of(const Request& request, const ShaderOptions& options) {
   return reply;
 }
 
-// The uniform model of a surface's place; its file comes back.
+// Returns the file of the uniform model at a surface's place.
 Reply place(const Request& request) {
   const Json& a = request.arguments;
   const Options given("place", a, {"lod"}, {"verb", "id", "u", "v"});
@@ -495,7 +497,7 @@ Reply place(const Request& request) {
                                    CompactContent::model_and_notes)}};
 }
 
-// Textures follow as blobs of floats, [z][y][x][channel], or of rgb9e5's words.
+// Returns a shader. Its textures follow as blobs of floats, [z][y][x][channel], or of rgb9e5's words.
 Reply shader(const Request& request) {
   const Json& a = request.arguments;
   const Options given("shader", a, {"name", "exact", "halfProducts", "linesAre1d"},
@@ -550,7 +552,8 @@ Reply export_surface_of(const SurfaceModel& surface, const std::string& kind, co
       surface.brdf, {.to = {export_target(kind)}, .name = export_name(name), .compressed = false}));
 }
 
-// The files of export_openpbr that hold inputs. Its shaders and pages would make the package larger than it may be.
+// Returns those files of export_openpbr that hold inputs. Shaders and pages would make the package larger than its
+// limit.
 std::vector<std::pair<std::string, std::string>> openpbr_files(const AnalyticBrdf& brdf,
                                                                const std::string& kind,
                                                                const std::string& name) {
@@ -566,7 +569,7 @@ std::vector<std::pair<std::string, std::string>> openpbr_files(const AnalyticBrd
       fmt::format("export: expected materialx, usda or gltf of openpbr, found '{}'; a fit has more", kind));
 }
 
-// A format of the verb convert, or a target of the verb export.
+// Writes a format of the verb convert, or a target of the verb export.
 Reply export_material(const Request& request) {
   const Json& a = request.arguments;
   const Options given("export", a,

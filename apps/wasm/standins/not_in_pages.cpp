@@ -1,4 +1,4 @@
-// What the library has and no page asks for: surfaces as OpenEXR, maps in blocks, and area lights.
+// These functions of the library are not used by pages: surfaces as OpenEXR, maps in blocks, and area lights.
 #include <burnish/error.h>
 #include <burnish/image/block_compression.h>
 #include <burnish/lighting/area_light_fit.h>

@@ -1,8 +1,8 @@
 #pragma once
 
-// What the library takes from C++20 that libc++ 13, which Debian 12 has with Emscripten, lacks: algorithms of
-// std::ranges, bit_cast, and numbers as text, which as far as reading goes libc++ 19 of Debian 13 lacks too. Included
-// before everything (CMakeLists.txt); empty with a newer libc++.
+// This header adds C++20 that the library uses and that libc++ 13 lacks, which Debian 12 has with Emscripten. It has
+// algorithms of std::ranges, bit_cast, and numbers as text. The reading of numbers is missing in libc++ 19 of Debian 13
+// too. CMakeLists.txt includes the header before everything. With a newer libc++ it is empty.
 #include <version>
 
 #if defined(_LIBCPP_VERSION) && _LIBCPP_VERSION < 200000
@@ -47,7 +47,7 @@ inline bool operator==(const from_chars_result& a, const from_chars_result& b) n
   return a.ptr == b.ptr && a.ec == b.ec;
 }
 
-/// The fewest digits that read back as the value.
+/// Writes the fewest digits that read back as the value.
 template <class T>
 requires is_floating_point_v<T> to_chars_result to_chars(char* begin, char* end, T value, chars_format)
 noexcept {
@@ -199,7 +199,7 @@ constexpr auto mismatch(R&& a, S&& b) {
   return std::mismatch(std::begin(a), std::end(a), std::begin(b), std::end(b));
 }
 
-/// What unique leaves over: only its begin() is asked for.
+/// The rest that unique leaves. Callers use begin() alone.
 template <class I>
 struct Rest {
   I first;

@@ -26,7 +26,7 @@ int row_count(const Header& header) {
   return header.dataWindow().max.y + 1;
 }
 
-// Writes little-endian numbers, texts that end in a zero, attributes.
+// Writes little-endian numbers, texts that end in a zero byte, and attributes.
 class Writer {
  public:
   template <class T>
@@ -160,7 +160,7 @@ MultiPartOutputFile::MultiPartOutputFile(OStream& stream, const Header* headers,
   for (const Header& header : headers_) head.bytes += packed_header(header, several_);
   if (several_) head.bytes.push_back('\0');
   write(stream_, head.bytes);
-  // where rows are is known from their sizes: parts follow each other
+  // The sizes of rows give their places: parts follow each other.
   std::uint64_t at = stream_.tellp();
   for (const Header& header : headers_) at += 8 * static_cast<std::uint64_t>(row_count(header));
   for (std::size_t part = 0; part < headers_.size(); ++part) {

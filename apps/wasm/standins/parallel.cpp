@@ -1,5 +1,5 @@
-// In place of math/parallel.cpp: chunks on this thread and on those that burnish_start_threads has made, which are
-// none where shared memory is none. Results are the same for every number of threads.
+// This file stands in for math/parallel.cpp. Chunks run on this thread and on those of burnish_start_threads. Without
+// shared memory there are none of those. Results are the same for every number of threads.
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
@@ -18,7 +18,8 @@ namespace {
 
 using Body = std::function<void(std::size_t, std::size_t, std::size_t)>;
 
-// The chunks of one loop, taken by whoever has time. It lives on its caller's stack, who waits for its helpers.
+// The chunks of one loop, taken by any idle thread. The loop lives on the stack of its caller, which waits for its
+// helpers.
 class Loop {
  public:
   Loop(std::size_t count, std::size_t chunk_size, const Body& body)
@@ -36,7 +37,7 @@ class Loop {
       } catch (...) {
         const std::lock_guard lock(mutex_);
         if (!error_) error_ = std::current_exception();
-        next_ = chunks;  // what is begun ends, nothing else begins
+        next_ = chunks;  // running chunks end, no other begins
       }
     }
   }
@@ -52,7 +53,7 @@ class Loop {
   std::exception_ptr error_;
 };
 
-// Threads that help with loops, the latest first: it is within the others. They end with the worker.
+// Threads that help with loops, the latest loop first, since it is nested in earlier ones. They end with the worker.
 class Pool {
  public:
   void start(int threads) {
@@ -98,7 +99,7 @@ class Pool {
 };
 
 Pool& pool() {
-  static Pool* const threads = new Pool;  // as long as they
+  static Pool* const threads = new Pool;  // lives as long as its threads
   return *threads;
 }
 
@@ -113,7 +114,7 @@ void for_each_chunk(std::size_t count, std::size_t chunk_size, const Body& body)
   loop.rethrow();
 }
 
-// A thread that waits for its own loop takes up no other.
+// A thread that waits for its own loop takes chunks of no other loop.
 void run_isolated(const std::function<void()>& body) {
   body();
 }
@@ -124,7 +125,7 @@ ThreadLimit::~ThreadLimit() {}
 
 }  // namespace burnish
 
-/// Threads beside the caller's, once; their workers have to be there.
+/// Starts threads beside the caller's. Call it once, when their workers exist.
 extern "C" EMSCRIPTEN_KEEPALIVE void burnish_start_threads(int threads) {
   burnish::pool().start(threads);
 }

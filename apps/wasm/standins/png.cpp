@@ -1,4 +1,4 @@
-// In place of image/png.cpp: its encoder, with the one of stb_image_write, which needs no other library.
+// This file stands in for image/png.cpp. Its encoder is that of stb_image_write, which needs no other library.
 #include <string_view>
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 
 namespace burnish {
 
-std::string encode_png(const Image8& image, PngValues) {  // it writes no chunk of colours
+std::string encode_png(const Image8& image, PngValues) {  // no chunk of colours is written
   if (image.channels != 3 && image.channels != 4)
     throw Error(fmt::format("a PNG has 3 or 4 channels, not {}", image.channels));
   if (image.width <= 0 || image.height <= 0) throw Error("a PNG has at least one pixel");

@@ -1,9 +1,9 @@
-// In place of libunwind where the compiler is older than LLVM 15: it writes which landing pad an exception has come to
-// into one place for all threads, libunwind of threads reads another a thread, and no catch of a type finds its own.
-// Here both mean the one place. So of all threads one may catch by type at a time: the caller of loops, whose bodies
-// catch nothing or everything (catch (...) asks for no type).
+// This file stands in for libunwind where the compiler is older than LLVM 15. The compiler then writes the landing pad
+// of an exception into one place for all threads. libunwind with threads reads a place of each thread, so no catch by
+// type finds its exception. Here both use the one place. Therefore only one thread at a time may catch by type: the
+// caller of loops. Bodies of loops catch nothing or everything, since catch (...) asks for no type.
 //
-// What these functions have to do is told by the Itanium C++ ABI and, for WebAssembly, by LLVM's pass WasmEHPrepare.
+// The Itanium C++ ABI and, for WebAssembly, LLVM's pass WasmEHPrepare define these functions.
 #if __clang_major__ < 15
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 extern "C" {
 
 struct LandingPad {
-  std::uintptr_t index, types;  // of the pad in its function, and the function's table of types
-  std::uintptr_t chosen;        // which of them catches
+  std::uintptr_t index, types;  // the pad's number in its function, and the function's table of types
+  std::uintptr_t chosen;        // the catch that is chosen
 };
 LandingPad __wasm_lpad_context;
 
@@ -21,7 +21,7 @@ struct Thrown {
   void (*destroy)(int reason, Thrown* self);
 };
 
-// libc++abi's, which looks for the type that catches
+// This function of libc++abi looks for the type that catches.
 int __gxx_personality_wasm0(int version, int actions, std::uint64_t of_language, Thrown* thrown,
                             LandingPad* at);
 
@@ -41,12 +41,12 @@ void _Unwind_DeleteException(Thrown* thrown) {
   if (thrown->destroy) thrown->destroy(kForeignCaught, thrown);
 }
 
-// The only register that is written is that of the type.
+// The register of the type is the only one that is written.
 void _Unwind_SetGR(LandingPad* at, int which, std::uintptr_t value) {
   if (which == 1) at->chosen = value;
 }
 void _Unwind_SetIP(LandingPad*, std::uintptr_t) {}
-// Pads count from 1, and the reader takes one off as of a return address.
+// Returns the index from 1, plus one: the reader subtracts one, as from a return address.
 std::uintptr_t _Unwind_GetIP(LandingPad* at) {
   return at->index + 2;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-// In place of Zstandard: frames that hold what they are given as it is, which every reader of the format takes.
+// This header stands in for Zstandard. Its frames hold the input uncompressed, which every reader of the format
+// accepts.
 // Source: RFC 8878, 3.1.1.
 
 #include <algorithm>
@@ -17,10 +18,10 @@ inline std::size_t ZSTD_compressBound(std::size_t size) {
 inline std::size_t ZSTD_compress(void* to, std::size_t, const void* from, std::size_t size, int) {
   unsigned char* out = static_cast<unsigned char*>(to);
   const unsigned char* in = static_cast<const unsigned char*>(from);
-  // magic number; one segment, its size in eight bytes
+  // The frame's head has the magic number, then one segment with its size in eight bytes.
   for (const unsigned char byte : {0x28, 0xB5, 0x2F, 0xFD, 0xE0}) *out++ = byte;
   for (int i = 0; i < 8; ++i) *out++ = static_cast<unsigned char>(std::uint64_t{size} >> (8 * i));
-  // raw blocks
+  // The data follow in raw blocks.
   std::size_t left = size;
   do {
     const std::size_t block = std::min(left, kZstdBlock);

@@ -1,7 +1,7 @@
 #pragma once
 
-// In place of OpenEXR: the part that models, tables and slices are written and models read with. Flat scan-line parts,
-// never compressed, halves and floats, windows that begin at the origin.
+// These classes stand in for OpenEXR. They have the part that writes models, tables and slices, and reads models. Parts
+// are flat scan-line parts, never compressed, of halves and floats. Windows begin at the origin.
 // Source: [OpenEXR], file layout.
 
 #include <cstddef>
@@ -118,7 +118,7 @@ class Header {
   void setName(const std::string& name) { name_ = name; }
   const std::string& name() const { return name_; }
   void setType(const std::string&) {}
-  /// What is asked for is not heard when writing: nothing is compressed.
+  /// Writing ignores this setting: nothing is compressed.
   Compression& compression() { return compression_; }
   const Compression& compression() const { return compression_; }
   ChannelList& channels() { return channels_; }
@@ -182,7 +182,7 @@ class OutputPart {
  public:
   OutputPart(MultiPartOutputFile& file, int part) : file_(file), part_(part) {}
   void setFrameBuffer(const FrameBuffer& frame) { frame_ = frame; }
-  /// All rows at once.
+  /// Writes all rows, whatever the number.
   void writePixels(int) { file_.write_pixels(part_, frame_); }
 
  private:
@@ -214,7 +214,7 @@ class MultiPartInputFile {
   void read_pixels(int part, const FrameBuffer& frame);
   IStream& stream_;
   std::vector<Header> headers_;
-  std::vector<std::vector<std::uint64_t>> rows_;  // where they are in the file
+  std::vector<std::vector<std::uint64_t>> rows_;  // their offsets in the file
   bool several_ = false;
 };
 
@@ -222,7 +222,7 @@ class InputPart {
  public:
   InputPart(MultiPartInputFile& file, int part) : file_(file), part_(part) {}
   void setFrameBuffer(const FrameBuffer& frame) { frame_ = frame; }
-  /// All rows at once.
+  /// Reads all rows, whatever the range.
   void readPixels(int, int) { file_.read_pixels(part_, frame_); }
 
  private:
