@@ -16,8 +16,8 @@
 
 namespace burnish::python {
 
-/// True of an array's type, NumPy's or another package's ("torch.float32"), if it is float32; none where the value is no
-/// array. What has no type but lends its memory (DLPack) says it there.
+/// Returns true if an array's type is float32, in NumPy or another package ("torch.float32"). An object without `dtype`
+/// that lends its memory by DLPack tells its type there. Returns nothing where the value is no array.
 inline std::optional<bool> is_float32(nb::handle value) {
   if (nb::hasattr(value, "dtype")) {
     const auto type = nb::cast<std::string>(nb::str(nb::handle(value.attr("dtype"))));
@@ -28,8 +28,8 @@ inline std::optional<bool> is_float32(nb::handle value) {
   return lent.dtype() == nb::dtype<float>();
 }
 
-/// A function's arguments that may be lists, integers or arrays of different types, as arrays of one: float32 where
-/// every array among them and `out` is, else float64.
+/// Decides the common type of arguments that may be lists, integers or arrays of different types. Returns true for
+/// float32: every array among them and `out` is float32. Otherwise they become float64.
 inline bool is_single(std::initializer_list<nb::handle> arguments, nb::handle out = nb::none()) {
   bool any = false;
   const auto fits = [&](nb::handle argument) {
@@ -42,13 +42,15 @@ inline bool is_single(std::initializer_list<nb::handle> arguments, nb::handle ou
   return fits(out) && any;
 }
 
-/// As NumPy has it, in the same memory where its owner lends that. Throws what the owner does where it refuses.
+/// Returns the value as a NumPy array, in the same memory where its owner lends that. Throws the owner's error where it
+/// refuses.
 inline nb::object as_numpy(nb::handle value) {
   const bool only_lends = nb::hasattr(value, "__dlpack__") && !nb::hasattr(value, "__array__");
   return nb::module_::import_("numpy").attr(only_lends ? "from_dlpack" : "asarray")(value);
 }
 
-/// What is said of a value that NumPy makes no array of: its owner's first line, as of an array on a graphics card.
+/// Describes a value that NumPy makes no array of, by its owner's first line. An example is an array on a graphics
+/// card.
 inline std::string refusal_of(nb::handle value, const nb::python_error& error) {
   if (!is_float32(value) && !nb::hasattr(value, "__array__") && !nb::hasattr(value, "__dlpack__"))
     return "rows of unequal lengths";
@@ -56,8 +58,8 @@ inline std::string refusal_of(nb::handle value, const nb::python_error& error) {
   return fmt::format("{}: {}", nb::str(value.type().attr("__name__")).c_str(), why.substr(0, why.find('\n')));
 }
 
-/// What NumPy makes of the value, as floats. Throws nb::type_error naming the argument where it is no array of real
-/// numbers that the processor can read.
+/// Returns the value as a NumPy array of floats. Throws nb::type_error, naming the argument, where it is no array of
+/// real numbers that the processor can read.
 inline nb::object numbers_of(nb::handle value, std::string_view name, bool single) {
   const auto refuse = [&](const std::string& found) -> nb::object {
     throw nb::type_error(fmt::format("{}: expected an array of real numbers, found {}", name, found).c_str());
@@ -66,7 +68,7 @@ inline nb::object numbers_of(nb::handle value, std::string_view name, bool singl
   try {
     array = as_numpy(value);
   } catch (nb::python_error& error) {
-    // rows of different lengths; what is on another device, or is differentiated
+    // NumPy refuses rows of different lengths, and arrays on another device or with gradients.
     for (PyObject* const kind : {PyExc_ValueError, PyExc_TypeError, PyExc_RuntimeError, PyExc_BufferError})
       if (error.matches(kind)) return refuse(refusal_of(value, error));
     throw;

@@ -18,7 +18,7 @@ namespace burnish::python {
 
 namespace {
 
-// What a batch takes beside the options of a fit.
+// Keywords of a batch besides the options of a fit.
 constexpr std::string_view kOtherKeywords[] = {
     "to",           "exact",  "mips",          "compressed", "compact",    "resume",          "threads",
     "memory",       "studio", "keep_spectral", "illuminant", "has_cosine", "clamp_negatives", "back_side",
@@ -26,7 +26,7 @@ constexpr std::string_view kOtherKeywords[] = {
 
 using Materials = std::variant<std::vector<std::string>, std::filesystem::path>;
 
-// Starts a batch; iterating gives a dictionary a material.
+// Starts a batch. Iterating gives a dictionary for each material.
 Batch* batch(const Materials& materials, const std::filesystem::path& folder,
              const std::vector<std::string>& to, bool exact, bool mips, bool compressed, bool compact,
              bool resume, int threads, std::uint64_t memory, const std::string& studio, bool keep_spectral,
@@ -34,7 +34,7 @@ Batch* batch(const Materials& materials, const std::filesystem::path& folder,
              bool has_cosine_o, bool brf, const nb::kwargs& how) {
   if (to.empty() && (exact || mips || !compressed))
     throw Error("batch: expected exports, to=, with exact, mips and compressed=False, found none");
-  open_illuminant(illuminant);  // also where no spectrum will need it
+  open_illuminant(illuminant);  // checked even where no spectrum needs it
   BatchOptions options;
   options.folder = folder;
   options.compact = compact;
@@ -58,7 +58,7 @@ Batch* batch(const Materials& materials, const std::filesystem::path& folder,
   return new Batch(std::move(entries), std::move(options));
 }
 
-// Ctrl-C leaves the wait.
+// Waits for the next material. Ctrl-C ends the wait.
 nb::object next_of(Batch& batch) {
   std::optional<MaterialRecord> record;
   {

@@ -22,7 +22,7 @@ namespace {
 
 using Materials = std::variant<std::vector<std::string>, std::filesystem::path>;
 
-// A book of what can be in one; what cannot ends it.
+// Makes a book. A material that cannot be in a book is an error.
 std::shared_ptr<const MaterialBook> make(const Materials& materials, std::uint64_t bytes,
                                          std::size_t bytes_a_material, std::uint64_t seed,
                                          const std::shared_ptr<const MaterialBook>& shared) {

@@ -15,19 +15,20 @@ namespace burnish::python {
 
 namespace {
 
-// Directions a task: enough that starting one costs nothing.
+// A task has so many directions that starting it costs hardly anything.
 constexpr std::size_t kChunk = 32'768;
 
-/// What one evaluation reads and writes.
+/// The arrays that one evaluation reads and writes.
 template <class T>
 struct Job {
   Rows<const T> wi, wo;
   Rows<T> f;
   std::size_t count, channels;
-  bool transmits = false;  ///< wo lies below the surface: it is mirrored through it before it is evaluated
+  bool transmits = false;  ///< wo lies below the surface, and is mirrored to above it before the evaluation
 };
 
-// A part of a model's evaluation: as arrays lie if all are in planes or all in rows, else by rows.
+// Evaluates a part by a model. Arrays that are all in planes or all in rows are used in place; others go through
+// buffers of rows.
 void eval_model(const FactoredEvaluator& evaluator, const Job<float>& job, std::size_t begin,
                 std::size_t end) {
   if (job.wi.planes() && job.wo.planes() && job.f.planes()) {
@@ -54,7 +55,7 @@ void eval_model(const FactoredEvaluator& evaluator, const Job<float>& job, std::
   }
 }
 
-// One pair by the fast evaluator.
+// Evaluates one pair by the fast evaluator.
 void eval_one(const FactoredEvaluator& evaluator, const Job<float>& job) {
   std::array<float, SymmetrizedBrdf::kMaxChannels> values;
   const auto f = std::span(values).first(job.channels);
@@ -62,7 +63,7 @@ void eval_one(const FactoredEvaluator& evaluator, const Job<float>& job) {
   for (std::size_t c = 0; c < job.channels; ++c) *job.f.at(0, c) = f[c];
 }
 
-// The definition, in double precision.
+// Evaluates by the definition, in double precision.
 template <class T>
 void eval_source(BrdfRef brdf, const Job<T>& job, std::size_t begin, std::size_t end) {
   const std::size_t block = std::min(kBlock, end - begin);
@@ -125,8 +126,8 @@ nb::object eval_any(const OpenedBrdf& brdf, nb::handle wi, nb::handle wo, const 
              : eval<double>(brdf, array_of<double>(wi, "wi"), array_of<double>(wo, "wo"), out);
 }
 
-// Seconds of one call of FactoredEvaluator::eval in one thread, the best of `repeats`, on arrays that are all
-// in planes or all in rows: what Python's eval is measured against.
+// Returns the seconds of one call of FactoredEvaluator::eval in one thread, the best of `repeats`. All arrays are in
+// planes, or all in rows. Python's eval is compared with it.
 double time_eval(const OpenedModel& model, const Array<const float>& wi, const Array<const float>& wo,
                  const nb::object& out, int repeats) {
   Job<float> job{.wi = rows_of<float>(wi, "wi", 3),

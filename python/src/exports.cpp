@@ -35,8 +35,8 @@ std::vector<ExportTarget> targets_of(const Names& names) {
   return targets;
 }
 
-// What files and functions are called where no name is given, after the source: a file's stem, what follows '#' in the
-// name of a material in a file, an analytic model.
+// Returns the name of files and functions where none is given. It comes from the source: a file's stem, the name after
+// '#' of a material in a file, or an analytic model.
 std::string name_of(const std::string& source) {
   if (is_analytic_spec(source)) return export_name(source.substr(0, source.find(':')));
   for (const std::string_view prefix : {"book:", "nbrdf:", "np:", "surface:"})
@@ -45,7 +45,7 @@ std::string name_of(const std::string& source) {
   return export_name(std::filesystem::path(source).stem().string());
 }
 
-// Writes the files where a folder is given, and hands them out by name.
+// Writes the files where a folder is given, and returns them by name.
 nb::dict handed_out(const ExportedFiles& exported, const std::optional<std::filesystem::path>& folder) {
   if (folder) write_files(*folder, exported.files);
   nb::dict files;

@@ -24,7 +24,7 @@ Json json_of_whole(nb::handle value) {
   std::int64_t negative = 0;
   if (nb::try_cast(whole, positive)) return positive;
   if (nb::try_cast(whole, negative)) return negative;
-  return nb::cast<std::string>(nb::str(whole));  // which is no number's range
+  return nb::cast<std::string>(nb::str(whole));  // too large for any option's range
 }
 
 Json json_of(const std::string& name, nb::handle value) {

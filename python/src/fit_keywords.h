@@ -10,17 +10,17 @@
 
 namespace burnish::python {
 
-/// What keywords of `fit` and `batch`, the caller, ask for. `others` are what the caller takes besides, which
-/// stand among the names of the error. Throws Error for what is no name or what the options refuse, and
-/// nb::type_error for an object that no option takes.
+/// Converts keywords of `fit` or `batch`, the caller, to a request. `others` are the caller's further keywords, which
+/// the error also lists. Throws Error for an unknown name or a value that the options refuse. Throws nb::type_error for
+/// an object that no option takes.
 FitRequest request_of(std::string_view caller, const nb::kwargs& keywords,
                       std::span<const std::string_view> others);
 
-/// "def fit(source: Source, *, NAME: TYPE = DEFAULT, ...) -> Model", with every option of fit_option_table that a fit
-/// of that kind takes: one with a method, which gives a Baseline, or one without.
+/// Returns "def fit(source: Source, *, NAME: TYPE = DEFAULT, ...) -> Model" with every option of fit_option_table for
+/// that kind of fit. A fit with a method returns a Baseline, one without a Model.
 std::string fit_signature(bool with_method);
 
-/// A line for each of these options: its name, its sentence, what stands where it is left out.
+/// Returns a line for each of these options: its name, its sentence, its default.
 std::string fit_keyword_help(bool with_method);
 
 }  // namespace burnish::python

@@ -18,7 +18,7 @@ constexpr const char* type_name(ValueType type) noexcept {
   return type == ValueType::vector ? "vector" : type == ValueType::integer ? "integer" : "real";
 }
 
-// (operation, type, constant, name, numbers of the arguments' nodes) for every node, and the outputs' nodes.
+// Returns (operation, type, constant, name, numbers of the arguments' nodes) for every node, and the outputs' nodes.
 nb::tuple graph_of(const std::vector<Expr>& outputs) {
   Graph graph;
   std::vector<std::size_t> places;
@@ -30,7 +30,7 @@ nb::tuple graph_of(const std::vector<Expr>& outputs) {
   return nb::make_tuple(nodes, places);
 }
 
-// With the tables that texels are read from, by their names in the graph.
+// Returns the graph with the tables that its texels are read from, by their names in the graph.
 nb::tuple eval_graph(const OpenedModel& model) {
   const ShaderFormula formula = shader_formula(model.brdf(), {.language = ShaderLanguage::cpp});
   nb::dict tables;
@@ -39,7 +39,7 @@ nb::tuple eval_graph(const OpenedModel& model) {
   return nb::make_tuple(graph_of({formula.value}), tables);
 }
 
-// Of OpenPBR, which has no tables.
+// Returns the graph of OpenPBR, which has no tables.
 nb::tuple formula_graph(const OpenedBrdf& opened) {
   const auto* const analytic = std::get_if<AnalyticBrdf>(&opened.source().brdf);
   const auto* const material = analytic ? std::get_if<OpenPbr>(&analytic->variant()) : nullptr;
@@ -48,7 +48,7 @@ nb::tuple formula_graph(const OpenedBrdf& opened) {
   return nb::make_tuple(graph_of({openpbr_expression(*material)}), nb::dict());
 }
 
-// The same of each lobe.
+// Returns the graph with each lobe as an output.
 nb::tuple lobe_graph(const OpenedModel& model) {
   return nb::make_tuple(graph_of(shader_formula(model.brdf(), {.language = ShaderLanguage::cpp}).lobes),
                         eval_graph(model)[1]);

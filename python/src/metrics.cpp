@@ -42,7 +42,8 @@ std::string text_of(const ErrorFigures& figures) {
 
 using Named = std::vector<std::pair<std::string, const OpenedBrdf*>>;
 
-// What a row is called: the model's name, or where that is the reference's or another's, what it is made of.
+// Names the rows: each by its model's name. A name that is taken, by the reference or another model, becomes the
+// description and the bytes.
 Named with_names(const OpenedBrdf& reference, const std::vector<const OpenedBrdf*>& models) {
   std::map<std::string, int> taken{{reference.source().name, 1}};
   for (const OpenedBrdf* model : models) ++taken[model->source().name];
@@ -59,7 +60,7 @@ Named with_names(const OpenedBrdf& reference, const std::vector<const OpenedBrdf
   return named;
 }
 
-// Of a dictionary its keys are the names.
+// Names the models. The keys of a dictionary are the names.
 Named named_models(const OpenedBrdf& reference, const nb::object& models) {
   const auto opened = [](nb::handle model) {
     const OpenedBrdf* found = nullptr;
@@ -106,7 +107,7 @@ nb::object compare_models(const OpenedBrdf& reference, const nb::object& models,
     std::optional<Measurement> measurement = measurement_of(source, made_reciprocal.ref());
     const Measurement* const measured = measurement ? &*measurement : nullptr;
     if (!report) return to_json(burnish::compare_models(scorer, compared, measured), measured);
-    // Exchanged directions of a transmission have the light on the other side, so they tell nothing.
+    // Exchanged directions of a transmission have the light on the other side, so they say nothing about the error.
     if (measurement && !source.findings.transmits())
       measurement->quality = quality_by_exchange(scorer, source.ref(), measurement->nodes);
     return to_json(write_report(*report, source.name, scorer, compared, measured), measured);

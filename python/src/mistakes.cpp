@@ -12,7 +12,7 @@
 #include <nanobind/stl/vector.h>
 
 #if PY_VERSION_HEX < 0x030C0000
-#include <structmember.h>  // PyMemberDef, which Python.h has from 3.12 on
+#include <structmember.h>  // has PyMemberDef, which is in Python.h since 3.12
 #endif
 
 #include <burnish/math/closest_name.h>
@@ -22,12 +22,12 @@ namespace burnish::python {
 
 namespace {
 
-// nanobind calls its functions by one of a few pointers, which stand in the objects where Python's protocol of
-// vectorcalls looks for them. Each is called through one of ours, which looks at the error alone.
+// nanobind calls its functions by one of a few pointers. They stand in the objects at the place of Python's vectorcall
+// protocol. A function of ours replaces each pointer: it calls the pointer and looks at the error alone.
 constexpr std::size_t kMostKinds = 12;
 std::array<vectorcallfunc, kMostKinds> called_by{};
 
-// Replaces the error that stands by one line, where it is of a call that fits no signature.
+// Replaces the present error by one line, where a call fits no signature.
 void explain(PyObject* function, PyObject* const* arguments, std::size_t count, PyObject* keywords) {
   if (!PyErr_ExceptionMatches(PyExc_TypeError)) return;
   const nb::python_error error;  // takes the error
@@ -38,7 +38,7 @@ void explain(PyObject* function, PyObject* const* arguments, std::size_t count, 
     nb::list positional;
     nb::dict named;
     const bool makes_one = nb::cast<std::string>(nb::handle(function).attr("__name__")) == "__init__";
-    if (makes_one) positional.append(nb::none());  // what is not yet made is no object to hand on
+    if (makes_one) positional.append(nb::none());  // the object does not exist yet
     for (std::size_t i = makes_one; i < count; ++i) positional.append(nb::handle(arguments[i]));
     for (Py_ssize_t i = 0; keywords && i < PyTuple_Size(keywords); ++i)
       named[nb::handle(PyTuple_GetItem(keywords, i))] =
@@ -64,8 +64,8 @@ constexpr std::array<vectorcallfunc, kMostKinds> all_calls(std::index_sequence<k
 }
 constexpr auto kCalls = all_calls(std::make_index_sequence<kMostKinds>());
 
-// Where objects of a type keep the pointer that calls them, 0 where they have none. It is asked of the members that the
-// type was made from, which the stable interface of Python 3.12 hands out; the type itself it hides.
+// Returns the offset of the vectorcall pointer in objects of a type, or 0 where they have none. The offset is read from
+// the members that the type was made from, since the stable interface of Python 3.12 hides the type itself.
 std::size_t place_of_call(nb::handle type) {
   const auto* member = static_cast<const PyMemberDef*>(
       PyType_GetSlot(reinterpret_cast<PyTypeObject*>(type.ptr()), Py_tp_members));

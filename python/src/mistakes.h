@@ -4,8 +4,8 @@
 
 namespace burnish::python {
 
-/// From now on a call that fits no signature of a bound function or method raises a TypeError of one line, which names
-/// what is wrong and the nearest name of a misspelt keyword. To be called once, when all else is bound.
+/// Makes calls that fit no signature of a bound function or method raise a TypeError of one line. The line names the
+/// mistake, and the nearest name of a misspelt keyword. Call it once, after all bindings.
 void explain_mistakes(nb::module_& m);
 
 }  // namespace burnish::python

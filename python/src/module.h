@@ -29,12 +29,12 @@ void bind_surfaces(nb::module_& m);
 void bind_uncertainty(nb::module_& m);
 void bind_writers(nb::module_& m);
 
-/// A JSON text as Python objects.
+/// Returns a JSON text as Python objects.
 inline nb::object from_json(const std::string& text) {
   return nb::module_::import_("json").attr("loads")(text);
 }
 
-/// A C-contiguous NumPy array that owns what the vector held.
+/// Returns a C-contiguous NumPy array that owns the vector's values.
 template <class T>
 nb::object to_numpy(std::vector<T> values, std::vector<std::size_t> shape) {
   auto* kept = new std::vector<T>(std::move(values));

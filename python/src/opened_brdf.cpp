@@ -11,7 +11,7 @@ const TabulatedSampler& OpenedBrdf::sampler() const {
   std::call_once(sampler_made_, [&] {
     const FunctionWatch watch({this});
     sampler_.emplace(ref());
-    watch.rethrow();  // the next to ask tries again
+    watch.rethrow();  // the next call tries again
   });
   return *sampler_;
 }

@@ -20,8 +20,8 @@
 
 namespace burnish::python {
 
-/// burnish.Source: an opened BRDF, and what is made from it when it is first asked for. It stays where it
-/// is, so that references into it hold; nothing about it changes, so that threads may share it.
+/// burnish.Source: an opened BRDF, and objects that are made from it at their first use. It never moves, so references
+/// into it hold. It never changes, so threads may share it.
 class OpenedBrdf {
  public:
   explicit OpenedBrdf(Source source) : source_(std::move(source)) {}
@@ -30,18 +30,18 @@ class OpenedBrdf {
 
   const Source& source() const noexcept { return source_; }
   BrdfRef ref() const noexcept { return source_.ref(); }
-  /// The model, or nullptr where it is none.
+  /// Returns the model, or nullptr where the source is none.
   const FactoredBrdf* model() const noexcept { return std::get_if<FactoredBrdf>(&source_.brdf); }
 
-  /// The function of one's own, or nullptr where it is none.
+  /// Returns the user's own function, or nullptr where the source is none.
   const FunctionBrdf* function() const noexcept { return std::get_if<FunctionBrdf>(&source_.brdf); }
 
-  /// Throws what a function of one's own raises.
+  /// Throws the exception that a user's function raises.
   const TabulatedSampler& sampler() const;
-  /// What knows how far a measurement may be off, made when it is first asked for. Throws Error, naming the source,
-  /// where it is no measurement, or has no node far enough above the horizon.
+  /// Returns the function that knows a measurement's errors, made at the first call. Throws Error, naming the source,
+  /// where it is no measurement or has no node far enough above the horizon.
   const KrigedNodes& uncertain() const;
-  /// Of models only.
+  /// Requires a model.
   const FactoredEvaluator& evaluator() const {
     std::call_once(evaluator_made_, [&] { evaluator_.emplace(*model()); });
     return *evaluator_;
@@ -55,7 +55,8 @@ class OpenedBrdf {
   mutable std::unique_ptr<const KrigedNodes> uncertain_;
 };
 
-/// Evaluation never throws: what functions of one's own raise from now on waits until it is asked for.
+/// Keeps exceptions of users' functions, since evaluation never throws. rethrow() throws those raised after the
+/// construction.
 class FunctionWatch {
  public:
   explicit FunctionWatch(std::initializer_list<const OpenedBrdf*> sources) {
@@ -73,8 +74,8 @@ class FunctionWatch {
   std::vector<std::pair<const FunctionBrdf*, std::size_t>> watched_;
 };
 
-/// What `body` returns, run without the GIL. What was raised meanwhile in functions of one's own is raised instead, in
-/// place of an Error that came of it too.
+/// Returns the result of `body`, run without the GIL. An exception that a user's function raised meanwhile is rethrown.
+/// It replaces an Error that it may have caused.
 template <class Body>
 auto without_gil(const FunctionWatch& watch, const Body& body) {
   const nb::gil_scoped_release released;
@@ -96,7 +97,7 @@ auto without_gil(const FunctionWatch& watch, const Body& body) {
   }
 }
 
-/// burnish.Model: one whose BRDF is factored.
+/// burnish.Model: a source whose BRDF is factored.
 class OpenedModel : public OpenedBrdf {
  public:
   OpenedModel(const std::string& name, Model model) : OpenedBrdf(to_source(name, std::move(model))) {}
@@ -105,7 +106,7 @@ class OpenedModel : public OpenedBrdf {
   const FactoredBrdf& brdf() const noexcept { return *model(); }
 };
 
-/// burnish.Baseline: what others would fit.
+/// burnish.Baseline: a fit by another method.
 class OpenedBaseline : public OpenedBrdf {
  public:
   OpenedBaseline(const std::string& name, Baseline baseline)
@@ -117,12 +118,12 @@ class OpenedBaseline : public OpenedBrdf {
   Baseline baseline_;
 };
 
-/// The same as a native model, for writing.
+/// Returns the native model for writing.
 inline Model to_model(const OpenedModel& opened) {
   return to_model(opened.source());
 }
 
-/// A BRDF made reciprocal unless it is so by construction or shall stay as it is.
+/// A BRDF made reciprocal, unless it is so by construction or `symmetrize` is false.
 class Reciprocal {
  public:
   Reciprocal(const OpenedBrdf& opened, bool symmetrize) : opened_(opened) {

@@ -30,7 +30,7 @@ namespace {
 
 constexpr std::size_t kTriedPairs = 200;
 constexpr std::array kTriedTurns{0.7, 2.2, 4.1};  // radians
-constexpr double kSameTurned = 1e-3;              // relative: what functions in floats are apart
+constexpr double kSameTurned = 1e-3;              // relative: the difference of functions in floats
 
 std::string shape_text(const Array<const double>& array) {
   return array.ndim() == 1 ? fmt::format("({},)", array.shape(0))
@@ -41,7 +41,7 @@ std::string vector_text(Vec3 w) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g})", w.x, w.y, w.z);
 }
 
-// A direction as readers of files take it: of length 1 to 1 %, scaled to 1, above the horizon.
+// Returns a direction above the horizon. Its length must be 1 to 1 %, as in readers of files, and is scaled to 1.
 Vec3 measured_direction(const Rows<const double>& rows, std::size_t i, const char* name) {
   const Vec3 w = vector_at(rows, i);
   const double l = length(w);
@@ -53,7 +53,7 @@ Vec3 measured_direction(const Rows<const double>& rows, std::size_t i, const cha
   return std::abs(l - 1) < 1e-12 ? w : (1 / l) * w;
 }
 
-// Values of shape (N,) or (N, channels); of one pair, given as two vectors, () or (channels,).
+// Returns values of shape (N,) or (N, channels). One pair, given as two vectors, has values of shape () or (channels,).
 Rows<const double> value_rows(const Array<const double>& values, std::size_t count, bool one) {
   const std::size_t n = values.ndim();
   if (one && n == 0) return {values.data(), 0, 1, 1, true};
@@ -126,7 +126,7 @@ OpenedBrdf* from_samples(nb::handle wi, nb::handle wo, nb::handle values, std::o
       {name, ScatteredBrdf(std::move(file.samples)), std::move(file.findings), clamp_negatives});
 }
 
-// A function of Python's. It may die in any thread.
+// A Python function. Any thread may destroy it.
 class Callable {
  public:
   explicit Callable(nb::handle function)
@@ -136,7 +136,7 @@ class Callable {
           Py_DECREF(object);
         }) {}
 
-  // What it returns for the pairs, checked to be real numbers. Needs the GIL.
+  // Returns its values for the pairs, checked to be real numbers. Needs the GIL.
   Array<const double> operator()(std::span<const DirectionPair> pairs) const {
     std::vector<double> wi, wo;
     for (const auto& [i, o] : pairs) {
@@ -180,7 +180,7 @@ void copy_values(const Array<const double>& found, std::span<const DirectionPair
     }
 }
 
-// How many channels a function has, by its answer to several pairs.
+// Returns a function's number of channels, from its answer to several pairs.
 std::size_t channels_of_answer(const Array<const double>& found, std::size_t pairs) {
   const std::size_t n = found.ndim();
   if (n == 1 && found.shape(0) == pairs) return 1;
@@ -194,7 +194,7 @@ Vec3 turned(Vec3 w, double angle) {
   return {c * w.x - s * w.y, s * w.x + c * w.y, w.z};
 }
 
-// Whether turning both directions about the normal changes nothing, as far as tried.
+// Returns true if turning both directions about the normal changes nothing, at the turns that are tried.
 bool turns(const Callable& function, std::span<const DirectionPair> pairs, std::span<const double> expected,
            std::size_t channels) {
   std::vector<double> values(expected.size());

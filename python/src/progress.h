@@ -7,7 +7,8 @@
 
 namespace burnish::python {
 
-/// Lets Ctrl-C end a fit: what is thrown here leaves it. `callback`, None or a callable, is kept alive by the caller.
+/// Lets Ctrl-C end a fit, which passes on exceptions of this function. `callback` is None or a callable; the caller
+/// keeps it alive.
 inline std::function<void(std::string_view, double)> progress_of(nb::handle callback) {
   return [callback](std::string_view stage, double fraction) {
     const nb::gil_scoped_acquire acquired;

@@ -21,7 +21,7 @@ namespace burnish::python {
 template <class T>
 using Array = nb::ndarray<T, nb::device::cpu>;
 
-/// N vectors in a NumPy array, wherever its strides put them; one alone stands for all.
+/// N vectors in a NumPy array, with any strides. A single vector stands for all rows.
 template <class T>
 struct Rows {
   T* data = nullptr;
@@ -32,15 +32,15 @@ struct Rows {
   T* at(std::size_t i, std::size_t k) const noexcept {
     return data + static_cast<std::int64_t>(i) * row + static_cast<std::int64_t>(k) * component;
   }
-  /// True if each component lies in one piece: what kernels read and write as it is.
+  /// Returns true if each component lies in one piece, which kernels read and write in place.
   bool planes() const noexcept { return row == 1; }
-  /// True if rows of that width follow one another: NumPy's usual order.
+  /// Returns true if rows of that width follow one another, NumPy's usual order.
   bool in_rows(std::size_t width) const noexcept {
     return component == 1 && row == static_cast<std::int64_t>(width);
   }
 };
 
-/// Reads shape (N, width) or (width,). Throws Error for another.
+/// Reads shape (N, width) or (width,). Throws Error for another shape.
 template <class T>
 Rows<const T> rows_of(const Array<const T>& array, const char* name, std::size_t width) {
   const std::size_t n = array.ndim();
@@ -51,7 +51,8 @@ Rows<const T> rows_of(const Array<const T>& array, const char* name, std::size_t
   return {array.data(), array.stride(0), array.stride(1), array.shape(0), false};
 }
 
-/// The common count of rows; (1, K) and (K,) stand for every row of the other. Throws Error if counts differ.
+/// Returns the common count of rows. Shapes (1, K) and (K,) stand for every row of the other. Throws Error if counts
+/// differ.
 template <class A, class B>
 std::size_t match(Rows<A>& a, Rows<B>& b, const char* names) {
   if (a.count != b.count && a.count != 1 && b.count != 1)
@@ -62,7 +63,7 @@ std::size_t match(Rows<A>& a, Rows<B>& b, const char* names) {
   return count;
 }
 
-/// The same of three.
+/// Does the same for three arrays.
 template <class A, class B, class C>
 std::size_t match(Rows<A>& a, Rows<B>& b, Rows<C>& c, const char* names) {
   std::size_t count = 1;
@@ -85,20 +86,20 @@ Vec3 vector_at(const Rows<const T>& rows, std::size_t i) noexcept {
           static_cast<double>(*rows.at(i, 2))};
 }
 
-/// To 1 %, as readers of directions ask for; false for what is no number.
+/// Returns true for unit vectors to 1 %, the tolerance of readers of directions. Returns false for NaN.
 inline bool is_direction(Vec3 w) noexcept {
   return std::abs(dot(w, w) - 1) < 0.02;
 }
 
-/// A result: `array` is what Python gets.
+/// A result: `array` is the object for Python.
 template <class T>
 struct Result {
   nb::object array;
   Rows<T> rows;
 };
 
-/// A new NumPy array of shape (count, width), in planes where the inputs are; or `out`, checked. `width` 0:
-/// one value a row, shape (count,).
+/// Returns a new NumPy array of shape (count, width), in planes where the inputs are, or `out`, checked. With `width` 0
+/// a row has one value, and the shape is (count,).
 template <class T>
 Result<T> make_result(const nb::object& out, std::size_t count, std::size_t width, bool planes) {
   nb::object array = out;
@@ -116,12 +117,12 @@ Result<T> make_result(const nb::object& out, std::size_t count, std::size_t widt
   return {array, {view.data(), view.stride(0), width > 0 ? view.stride(1) : 0, count, false}};
 }
 
-/// Directions that go through buffers together.
+/// The number of directions that go through buffers together.
 inline constexpr std::size_t kBlock = 512;
 using Buffer = float[kBlock];
 
-/// The first kWidth components of rows [begin, begin + count) as floats: where they lie if each is in one
-/// piece, else copied to `buffers`.
+/// Returns the first kWidth components of rows [begin, begin + count) as floats. They stay in place if each is in one
+/// piece, else they are copied to `buffers`.
 template <std::size_t kWidth, class T>
 std::array<std::span<const float>, kWidth> components(const Rows<const T>& rows, std::size_t begin,
                                                       std::size_t count, Buffer* buffers) noexcept {
@@ -142,8 +143,8 @@ std::array<std::span<const float>, kWidth> components(const Rows<const T>& rows,
   return result;
 }
 
-/// Rows [begin, begin + count) of three one after the other: where they lie if they are, else copied to
-/// `buffer`, which has 3 * kBlock floats.
+/// Returns rows [begin, begin + count), three components each, one after the other. They stay in place if they lie so,
+/// else they are copied to `buffer`, which has 3 * kBlock floats.
 inline std::span<const float> in_rows(const Rows<const float>& rows, std::size_t begin, std::size_t count,
                                       float* buffer) noexcept {
   if (rows.in_rows(3)) return {rows.at(begin, 0), 3 * count};

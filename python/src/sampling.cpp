@@ -72,7 +72,7 @@ nb::tuple sample_wi(const OpenedBrdf& brdf, const Array<const T>& wo_array, cons
             w[2] = d.wi.z;
             density = d.pdf;
           }
-          // towards a viewer below the horizon nothing is drawn
+          // No direction is drawn for a viewer below the horizon.
           const bool above = *wo.at(i + k, 2) > 0;
           for (std::size_t c = 0; c < 3; ++c) *wi.rows.at(i + k, c) = above ? w[c] : T(c == 2);
           *pdf.rows.at(i + k, 0) = above ? density : T(0);

@@ -23,7 +23,7 @@ namespace burnish::python {
 
 namespace {
 
-// The part of that name, none of an empty one.
+// Returns the part of that name, or nothing for an empty name.
 std::optional<BsdfPart> part_of(const std::string& name) {
   if (name.empty()) return std::nullopt;
   if (const auto part = find_bsdf_part(name)) return part;
@@ -38,7 +38,7 @@ OpenedBrdf* open(const std::string& spec, const OpenOptions& options) {
   return new OpenedBrdf(std::move(source));
 }
 
-// (height, width, channels), of a volume with its depth before them.
+// Returns (height, width, channels), and for a volume its depth before them.
 std::vector<std::size_t> array_shape(const Table& table) {
   std::vector<std::size_t> shape;
   if (table.layout.shape == TableShape::volume) shape.push_back(static_cast<std::size_t>(table.layout.depth));
@@ -51,7 +51,7 @@ std::vector<std::size_t> array_shape(const Table& table) {
 nb::object table_values(nb::handle self) {
   const auto& table = nb::cast<const Table&>(self);
   const std::vector<std::size_t> shape = array_shape(table);
-  // no copy: the array keeps the model alive
+  // The array makes no copy, and keeps the model alive.
   return nb::cast(nb::ndarray<nb::numpy, const float>(table.values.data(), shape.size(), shape.data(), self));
 }
 

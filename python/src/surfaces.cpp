@@ -38,7 +38,7 @@ namespace burnish::python {
 
 namespace {
 
-/// burnish.Surface: a surface and what evaluates it.
+/// burnish.Surface: a surface and its evaluator.
 struct OpenedSurface {
   SpatialEvaluator evaluator;
   std::string notes, name;
@@ -48,7 +48,7 @@ struct OpenedSurface {
   const SpatialBrdf& brdf() const noexcept { return evaluator.surface(); }
 };
 
-// A capture's own name: its file's without the ending, its folder's.
+// Returns a capture's name: that of its file without the ending, or that of its folder.
 std::string called(const std::filesystem::path& capture) {
   const std::filesystem::path path = capture.has_filename() ? capture : capture.parent_path();
   return std::filesystem::is_directory(path) ? path.filename().string() : path.stem().string();
@@ -58,10 +58,10 @@ OpenedSurface* open_surface(const std::filesystem::path& path) {
   return new OpenedSurface(path.stem().string(), parse_surface(read_file(path)));
 }
 
-// Pairs a task.
+// A task has so many pairs.
 constexpr std::size_t kSurfaceChunk = 4096;
 
-// What evaluates a place: in floats, or the definition. Directions are of the surface's frame.
+// These evaluate a place: one in floats, one by the definition. Directions are in the surface's frame.
 struct FastPlace {
   const SpatialEvaluator& evaluator;
   SpatialEvaluator::Place place;

@@ -27,7 +27,7 @@ std::string projection_text(const Projection& p) {
              : std::string(to_string(p.kind));
 }
 
-// What a fit noted of its errors, after a comma: ", psnr 41.2 dB, expected relative 0.063".
+// Returns the errors in a fit's notes, after a comma: ", psnr 41.2 dB, expected relative 0.063".
 std::string errors_text(const std::string& notes) {
   const auto json = nlohmann::json::parse(notes, nullptr, false);
   std::string text;

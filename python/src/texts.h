@@ -8,7 +8,7 @@
 
 namespace burnish::python {
 
-/// What `repr` says: one line, what it is, its name, and what tells it from another.
+/// Return the text of `repr`: one line with the kind of object, its name, and its distinguishing properties.
 std::string text_of_source(const OpenedBrdf& opened);
 std::string text_of_model(const OpenedModel& opened);
 std::string text_of_baseline(const OpenedBaseline& opened);
@@ -16,13 +16,13 @@ std::string text_of_table(const Table& table);
 std::string text_of_use(const FactorUse& use);
 std::string text_of_lobe(const Lobe& lobe);
 
-/// "1 channel", "3 channels".
+/// Returns a count with its noun: "1 channel", "3 channels".
 std::string counted(std::size_t count, const char* noun);
 
-/// Names in quotes as a sentence has them: "\"a\", \"b\" and \"c\"".
+/// Returns names in quotes, joined for a sentence: "\"a\", \"b\" and \"c\"".
 std::string quoted_names(std::span<const std::string_view> names, std::string_view last_by = "and");
 
-/// A name in quotes, of a long one its beginning and its end.
+/// Returns a name in quotes; of a long one it has the beginning and the end.
 std::string quoted(const std::string& name);
 
 }  // namespace burnish::python

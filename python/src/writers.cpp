@@ -37,7 +37,7 @@ std::vector<std::string> write_converted(const OpenedBrdf& source, const std::fi
   return std::move(converted.losses);
 }
 
-/// The formats of which an argument says something.
+/// Lists the formats that an argument applies to.
 std::string names_with(bool Format::*argument) {
   std::vector<std::string_view> names;
   for (const Format& format : formats())
