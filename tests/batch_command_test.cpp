@@ -1,4 +1,4 @@
-// `burnish batch` from the outside: exit codes, what it says, and the script for Slurm.
+// These tests run `burnish batch` as a program: exit codes, messages, and the script for Slurm.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -32,7 +32,7 @@ TEST_F(BatchCommand, SaysAtTheEndWhatFailedAndHasTheRest) {
   EXPECT_THAT(outcome.output, HasSubstr("failed     missing: missing.csv"));
   EXPECT_THAT(outcome.output,
               HasSubstr("burnish: 1 of 3 materials were not fitted; the others are all there\n"));
-  // the bits of the fit alone
+  // The batch writes the same bits as the fit alone.
   ASSERT_EQ(run(fmt::format("{} fit ggx:alpha_x=0.3,alpha_y=0.3 -o {}{}", BURNISH_CLI,
                             (folder_.path / "alone.burnish").string(), kQuick))
                 .status,
@@ -73,7 +73,7 @@ TEST_F(BatchCommand, SkipsWhatIsNoMeasurementInADownloadedFolder) {
   EXPECT_THAT(outcome.output, HasSubstr("skipped    1 file that is no measurement: README.txt\n"));
   const Outcome json = batch(std::string("downloaded -o other --json") + kQuick);
   EXPECT_EQ(nlohmann::json::parse(json.output)["skipped"].size(), 1u);
-  // what is named is wanted, and so is a measurement that is broken
+  // A file named in a list must be fitted, and so must a broken measurement.
   write(folder_.path / "named", "downloaded/README.txt\n");
   EXPECT_EQ(batch(std::string("named -o third") + kQuick).status, 1);
   write(folder_.path / "downloaded/cut.binary", "abc");
@@ -102,7 +102,7 @@ TEST_F(BatchCommand, WritesAJobArrayThatRunsTheSameCommand) {
   EXPECT_THAT(script, HasSubstr("#SBATCH --partition=long\n"));
   EXPECT_THAT(script, Not(HasSubstr("--slurm ")));
 
-  // a shell that runs it does what the command does
+  // A shell that runs the script does the same as the command.
   EXPECT_EQ(run(fmt::format("cd {} && bash 'an out/batch.slurm'", folder_.path.string())).status, 1);
   ASSERT_EQ(batch(std::string("'a list' -o out --keep-negatives") + kQuick).status, 1);
   const std::string model = "models/ward_alpha_x_0.2_alpha_y_0.2.burnish";

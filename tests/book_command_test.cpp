@@ -1,4 +1,4 @@
-// `burnish book` and `fit --book` from the outside.
+// These tests run `burnish book` and `fit --book` as programs.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// The command line is one language.
+// These tests check that all verbs of the command line use the same words and rules.
 
 #include <algorithm>
 #include <filesystem>
@@ -23,7 +23,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What it says on both streams.
+/// Runs burnish and returns its output on both streams.
 Outcome burnish(const std::string& arguments) {
   return run(fmt::format("'{}' {} 2>&1", BURNISH_CLI, arguments));
 }
@@ -41,7 +41,7 @@ TEST(CommandLine, SaysWhatAMisspeltWordMayHaveMeant) {
     EXPECT_EQ(outcome.status, 2) << arguments;
     EXPECT_THAT(first_line(outcome), HasSubstr(fmt::format("did you mean {}?", meant)));
   }
-  // values of options, parameters of models, topics
+  // Values of options, parameters of models, and topics get suggestions too.
   for (const auto& [arguments, meant] :
        {std::pair{"export x -o y --to matrialx", "'materialx'"}, std::pair{"convert ggx a --to cvs", "'csv'"},
         std::pair{"render ggx --renderer cpuu", "'cpu'"}, std::pair{"fit ggx -o x --method nfm", "'nmf'"},
@@ -59,7 +59,7 @@ TEST(CommandLine, SaysWhatAMisspeltWordMayHaveMeant) {
     EXPECT_THAT(first_line(outcome), HasSubstr(fmt::format("; did you mean {}?", meant))) << arguments;
   }
   EXPECT_EQ(burnish("hw error --depth 99").status, 2);
-  // whatever the case; topics of help
+  // Suggestions ignore case, and include topics of help.
   EXPECT_THAT(first_line(burnish("info GGX:alpha_x=0.1")), HasSubstr("; did you mean 'ggx'?"));
   EXPECT_THAT(first_line(burnish("info lambert --illuminant d65")), HasSubstr("; did you mean 'D65'?"));
   EXPECT_THAT(first_line(burnish("formats")), HasSubstr("; did you mean 'help formats'?"));
@@ -83,7 +83,7 @@ TEST(CommandLine, SaysWhatAMisspeltWordMayHaveMeant) {
               HasSubstr("help: expected nothing after fit, which has no verbs below it, found 'fit'"));
   EXPECT_THAT(first_line(burnish("help hw fit")),
               HasSubstr("help: expected one of generate, model, error, found 'fit'"));
-  // options of a group are known
+  // Options of a group are known options.
   EXPECT_THAT(first_line(burnish("describe --bash --zsh")), testing::Not(HasSubstr("expected an option")));
   EXPECT_THAT(first_line(burnish("describe nothing")), testing::Not(HasSubstr("expected a verb")));
   for (const char* model : {"ggxx", "beckman:alpha_x=0.1", "lambertt"}) {
@@ -128,7 +128,7 @@ TEST(CommandLine, RefusesNamesOfAnotherKindBeforeTheWork) {
     EXPECT_EQ(outcome.status, 2) << arguments;
     EXPECT_THAT(first_line(outcome), HasSubstr(said)) << arguments;
   }
-  // other endings are part of a name
+  // Names with other endings are accepted.
   EXPECT_THAT(first_line(burnish("fit none.csv -o paint.v2")), HasSubstr("no such file"));
 }
 
@@ -147,7 +147,7 @@ TEST(CommandLine, EvaluatesToTheTerminalAndFromTheStandardInput) {
   EXPECT_EQ(read(out), fmt::format("r,g,b\n{0},{0},{0}\n", f));
   EXPECT_EQ(run(eval + in + " --with-directions -o " + out).output, "");
   EXPECT_EQ(read(out), values.output);
-  // values beside directions are a table of samples
+  // Values beside their directions are a table of samples.
   EXPECT_EQ(open_source(out, {}).samples()->size(), 1u);
   const auto json = nlohmann::json::parse(run(eval + in + " --json").output);
   EXPECT_EQ(json["columns"][4], "b");
@@ -211,7 +211,7 @@ TEST(CommandLine, PrintsNotesOfAFitAsLines) {
                                    testing::Not(HasSubstr("{")), testing::Not(HasSubstr("stop_reason"))));
   const auto json = nlohmann::json::parse(burnish(fmt::format("info '{}' --json", model)).output);
   EXPECT_EQ(json["notes"]["source"], "lambert");
-  // targets of an export in a list
+  // An export's targets may stand in a list.
   const std::string out = (folder.path / "out").string();
   ASSERT_EQ(burnish(fmt::format("export '{}' --to glsl,hlsl --to wgsl -o '{}'", model, out)).status, 0);
   for (const char* ending : {"glsl", "hlsl", "wgsl"})
@@ -245,7 +245,7 @@ TEST(CommandLine, SaysOnATerminalHowFarItIs) {
   EXPECT_THAT(
       burnish(fmt::format("fit ggx:alpha_x=0.2,alpha_y=0.2 -o '{}/i.exr'", folder.path.string())).output,
       testing::Not(HasSubstr("\r")));
-  // what is quick says nothing
+  // A quick verb prints no progress.
   EXPECT_THAT(run(fmt::format("script -qec \"'{}' info lambert --json\" /dev/null", BURNISH_CLI)).output,
               testing::Not(HasSubstr("\033[K")));
 }
@@ -290,7 +290,7 @@ TEST(CommandLine, KeepsErrorsShort) {
     write(folder.path / "damaged", text);
     const Outcome outcome = burnish(fmt::format("info '{}'", (folder.path / "damaged").string()));
     EXPECT_EQ(outcome.status, 1);
-    EXPECT_LT(first_line(outcome).size(), 300u) << outcome.output;  // with the name of the program
+    EXPECT_LT(first_line(outcome).size(), 300u) << outcome.output;  // the program's name included
     EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1);
   }
   EXPECT_LT(first_line(burnish(fmt::format("info {}", digits))).size(), 300u);
@@ -303,13 +303,13 @@ TEST(CommandLine, KeepsErrorsShort) {
 }
 
 TEST(CommandLine, CutsErrorsBetweenCharacters) {
-  // letters of two bytes each, at odd and even places
+  // The letters have two bytes each, at odd and even places.
   std::string letters;
   for (int i = 0; i < 200; ++i) letters += "\u00e9";
   for (const char* before : {"", "x"}) {
     const std::string line = first_line(burnish(fmt::format("info '{}{}{}'", before, letters, before)));
     EXPECT_THAT(line, HasSubstr(" ... "));
-    EXPECT_NO_THROW(nlohmann::json(line).dump()) << line;  // which takes whole characters only
+    EXPECT_NO_THROW(nlohmann::json(line).dump()) << line;  // dump() accepts whole characters only
   }
 }
 
@@ -334,7 +334,7 @@ TEST(CommandLine, SaysBeforeItsWorkThatItCannotWrite) {
   const TemporaryFolder folder("not_writable");
   const std::string out = folder.path.string();
   write(folder.path / "file", "text");
-  // sources that are none: what is said first is of the output
+  // No source exists here, so each message is about the output first.
   for (const auto& [arguments, name] :
        {std::pair{"fit none.exr -o", "x.exr"}, std::pair{"fit none.exr --method svd -o", "x.json"},
         std::pair{"fit none.exr --to gltf -o", "x.json"}, std::pair{"fit-surface none -o", "x.burnish"},
@@ -413,7 +413,7 @@ TEST(CommandLine, PrintsJsonForPrograms) {
   EXPECT_EQ(piped("50 32768\\n", "hw model --method exact")[0]["input"], 32768);
 }
 
-/// Every verb that does something, with what `describe --json` says of it.
+/// Appends every verb that has no verbs below it, with its entry of `describe --json`.
 void append_leaves(const nlohmann::json& verb, std::vector<nlohmann::json>& leaves) {
   if (verb["verbs"].empty()) leaves.push_back(verb);
   for (const nlohmann::json& below : verb["verbs"]) append_leaves(below, leaves);
@@ -435,7 +435,7 @@ TEST(CommandLine, HasJsonHelpAndExamplesInEveryVerb) {
     const std::string name = verb["name"], examples = verb["examples"];
     const std::vector<std::string> names = names_of(verb);
     EXPECT_THAT(names, testing::IsSupersetOf({"--help", "--json"})) << name;
-    // what is written is named alike, and so is the form in which
+    // Options for the output have the same name everywhere, and so do options for its format.
     for (const char* output : {"-o", "--output", "--out"})
       EXPECT_EQ(std::ranges::count(names, output), std::ranges::count(names, "-o")) << name;
     for (const auto& [other, common] : {std::pair{"--folder", "-o"}, {"--file", "-o"}, {"--lang", "--to"}})
@@ -445,7 +445,7 @@ TEST(CommandLine, HasJsonHelpAndExamplesInEveryVerb) {
     EXPECT_THAT(examples, HasSubstr("burnish " + name)) << name;
     EXPECT_THAT(burnish(name + " --help").output, HasSubstr(examples.substr(0, examples.find('\n')))) << name;
     for (const nlohmann::json& argument : verb["arguments"]) {
-      // one plain sentence
+      // The description is one plain sentence.
       const std::string said = argument["description"];
       SCOPED_TRACE(fmt::format("{} {}: {}", name, argument["names"].dump(), said));
       ASSERT_FALSE(said.empty());
@@ -499,7 +499,7 @@ TEST(CommandLine, DescribesWhatWasMeasuredAlone) {
       nlohmann::json::parse(burnish(fmt::format("info '{}' --target nodes --json", file)).output);
   EXPECT_EQ(json["count"], 600);
   EXPECT_EQ(json["negative_share"], 0);
-  // noise of a tenth, and what lies between few samples
+  // The error comes from noise of a tenth, and from interpolation between few samples.
   EXPECT_GT(json["held_out"]["relative"], 0.03);
   EXPECT_LT(json["held_out"]["relative"], 0.3);
   EXPECT_THAT(burnish(fmt::format("info '{}' --target nodes", file)).output,
@@ -549,10 +549,10 @@ TEST(CommandLine, ExplainsItsFormatsAndItself) {
   const auto json = nlohmann::json::parse(burnish("--json --version").output);
   EXPECT_THAT(version.output, HasSubstr("burnish " + json["burnish"].get<std::string>()));
   EXPECT_EQ(json["compiled_with"].size(), 1 + build_info().libraries.size());
-  EXPECT_EQ(burnish("--json help formats").status, 2);  // of a verb it stands behind it
+  EXPECT_EQ(burnish("--json help formats").status, 2);  // a verb's --json follows the verb
 }
 
-// A window's sheet: what it reflects, and another value of what passes through.
+// Returns a window's sheet: values of its reflection, and another value of its transmission.
 std::string sheet_xml() {
   const auto block = [](std::string_view direction, std::string_view band, double value) {
     return fmt::format(
@@ -584,14 +584,14 @@ TEST(CommandLine, ReadsEachPartAndBandOfASurface) {
   EXPECT_EQ(json.at("parts").size(), 3u);
   EXPECT_EQ(json.at("parts").at(2).at("read"), true);
 
-  // what the file has not is one line, and no part a usage error
+  // A part that the file lacks is an error of one line. A word that names no part is a misuse.
   const Outcome missing = burnish("info --part transmission-back " + file);
   EXPECT_EQ(missing.status, 1);
   EXPECT_THAT(missing.output, HasSubstr("expected part transmission-back, found reflection-front (Visible), "
                                         "transmission-front (Visible), transmission-front (NIR)\n"));
   EXPECT_EQ(burnish("info --part transmission " + file).status, 2);
 
-  // wo lies below the surface, of the file and of a model fitted to it
+  // In files and in models fitted to them, wo lies below the surface.
   const auto values = [&](const std::string& brdf) {
     return run(fmt::format(
                    "printf 'theta_i,phi_i,theta_o,phi_o\\n30,0,140,20\\n30,0,40,20\\n' | '{}' eval {} -",
@@ -631,7 +631,7 @@ TEST(CommandLine, TakesTheLightOfSpectraFromAName) {
   EXPECT_NE(drawn("A"), drawn("D65"));
   EXPECT_NE(converted("D50"), converted("D65"));
   EXPECT_NE(converted("A"), converted("E"));
-  // equal energy from a file; its rows are other breaks of the same sum
+  // Equal energy may come from a file. The file's rows split the same sum at other places.
   const Source named = parse_source(memory_file(converted("E")), {});
   const Source given = parse_source(memory_file(converted(out + "/light.txt")), {});
   for (std::size_t i = 0; i < named.samples()->values.size(); ++i)

@@ -1,4 +1,4 @@
-// `burnish describe`: manual pages and completions, used as man and the shells use them.
+// These tests use the manual pages and completions of `burnish describe` as man and the shells do.
 #include <algorithm>
 #include <filesystem>
 
@@ -18,7 +18,7 @@ using testing::Not;
 
 const std::string kDescribe = std::string(BURNISH_CLI) + " describe ";
 
-/// What bash proposes after these words, the last of which is being typed.
+/// Returns bash's proposals after these words. The last word is being typed.
 std::string proposed(const std::string& words) {
   return run(fmt::format(
                  "bash -c 'source <({} --bash); COMP_WORDS=({}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); "

@@ -1,4 +1,4 @@
-// What `burnish export` writes opens elsewhere.
+// These tests open the files of `burnish export` in other programs.
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ class Export : public testing::Test {
     write(folder_ / "two lobes.exr", format_model({smooth_model(model_case("Pqpr")), {}, "{}"}));
   }
 
-  // What `script` leaves in data-result when the exported page has run it, after "errors" of the console.
+  // Runs the exported page with `script`. Returns the page's data-result, after the "errors" of the console.
   std::string run_page(const std::string& script, int window) const {
     std::string page = read(folder_ / "out/two_lobes.html");
     page.insert(page.find("<script>"),
@@ -226,7 +226,7 @@ document.body.dataset.result = [canvas.toDataURL() !== lit, gl.getError() + erro
   found >> changes >> faults >> stops >> width >> height;
   EXPECT_EQ(changes, "true");
   EXPECT_EQ(faults, 0);
-  // of the pixel's middle, on a sphere of radius 0.85 that is as wide as the lesser side
+  // The light is that of the pixel's middle, on a sphere of radius 0.85 that is as wide as the lesser side.
   const auto at = [&](int pixels) { return pixels % 2 ? 0 : 1 / (0.85 * std::min(width, height)); };
   const double x = at(width), y = at(height);
   const Rgb light =

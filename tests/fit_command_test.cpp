@@ -1,4 +1,4 @@
-// `burnish fit` writes and prints what the library gives.
+// These tests check that `burnish fit` writes and prints the library's results.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -15,14 +15,14 @@ namespace burnish {
 namespace {
 
 constexpr const char* kPaint = "ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5/0.3/0.1,kd=0.2";
-// Angles in degrees, values in 1/sr.
+// Angles are in degrees, values in 1/sr.
 constexpr const char* kScattered =
     "theta_i,phi_i,theta_o,phi_o,value\n5,0,12,0,0.3\n22,0,11,60,0.2\n40,0,17,60,0.25\n50,0,50,180,0.5\n"
     "11,0,62,110,0.2\n28,0,29,175,0.6\n62,0,23,50,0.2\n";
 
 class FitCommand : public testing::Test {
  protected:
-  // The command with --json, which writes `out()`.
+  // Runs the command with --json; it writes `out()`.
   Outcome run_fit(const std::string& source, const std::string& arguments) const {
     return run(fmt::format("{} fit '{}' -o {} --json {}", BURNISH_CLI, source, out(), arguments));
   }
@@ -56,7 +56,7 @@ TEST_F(FitCommand, WritesTheFileThatTheNameAsksFor) {
   ASSERT_EQ(run(command + "fit " + kPaint + " --model pqp --table q=9 --samples 2000 -o " + name).status, 0);
   const Model model = to_model(open_source(name, {}));
   EXPECT_EQ(read(name), format_model_as(name, model));
-  // a model's name in .exr is its other file, slices are asked for
+  // A model with a name in .exr becomes its other file. Slices need --to exr.
   EXPECT_EQ(run(command + "convert " + name + ' ' + out() + ".exr").status, 0);
   EXPECT_EQ(read(out() + ".exr"), format_model(model));
   EXPECT_EQ(run(command + "convert " + name + ' ' + out() + ".exr --to exr --cells 4").status, 0);
@@ -82,7 +82,7 @@ TEST_F(FitCommand, ToAMaterialIsTheLibrarysFit) {
 }
 
 TEST_F(FitCommand, ToAMaterialNeedsNoFileAndSaysWhatIsBeyondIt) {
-  // brighter where light comes from than elsewhere
+  // This BRDF reflects more towards the light than elsewhere.
   const std::string command =
       std::string(BURNISH_CLI) + " fit lafortune:cx=0.9,cy=0.9,cz=0.9,ks=0.5 --alone --to gltf";
   const Outcome outcome = run(command);
@@ -97,7 +97,7 @@ TEST_F(FitCommand, ToAMaterialNeedsNoFileAndSaysWhatIsBeyondIt) {
   const Outcome misspelt = run(std::string(BURNISH_CLI) + " fit ggx --to opnpbr");
   EXPECT_EQ(misspelt.status, 2);
   EXPECT_THAT(misspelt.output, testing::HasSubstr("openpbr"));
-  EXPECT_EQ(run(std::string(BURNISH_CLI) + " fit ggx").status, 2);  // factors do
+  EXPECT_EQ(run(std::string(BURNISH_CLI) + " fit ggx").status, 2);  // factors need a file
 }
 
 TEST_F(FitCommand, IsOfAModelOrWithinABudget) {

@@ -1,4 +1,4 @@
-// Bad input of every kind gets one clear error and leaves no output.
+// These tests check that bad input of every kind gets one clear error and leaves no output.
 
 #include <filesystem>
 #include <fstream>
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// Parses; true if it threw. Any exception but a clear Error fails the test.
+/// Parses the content and returns true if that threw. Any exception but a clear Error fails the test.
 bool throws_clearly(std::string_view content) {
   try {
     parse_source(memory_file(content), {});
@@ -36,7 +36,7 @@ bool throws_clearly(std::string_view content) {
   return false;
 }
 
-/// The seeds of binary formats, or those of text.
+/// Returns the seeds of binary formats, or those of text formats.
 std::vector<std::pair<std::string, std::string>> seeds_that(bool are_binary) {
   std::vector<std::pair<std::string, std::string>> result;
   for (auto& seed : seeds::all_seeds())
@@ -92,7 +92,7 @@ TEST(Hostile, DamagedBytesThrowClearlyOrGiveSoundValues) {
       }
 }
 
-// Its length is fixed, so this one file is large and few of its bytes are tried.
+// A UTIA file has a fixed length, so this one file is large and few of its bytes are tried.
 TEST(Hostile, UtiaCutOrDamagedThrowsClearlyOrGivesSoundValues) {
   constexpr std::size_t kNumbers = 3 * 288 * 288;
   std::string whole;
@@ -106,7 +106,7 @@ TEST(Hostile, UtiaCutOrDamagedThrowsClearlyOrGivesSoundValues) {
   std::vector<double> f(3);
   Pcg32 random(1);
   for (int i = 0; i < 20; ++i) {
-    // the byte of a number's sign and exponent, which makes it huge or none at all, tiny or negative
+    // This byte has a number's sign and exponent. Damage makes the number huge or NaN, tiny or negative.
     const std::size_t at = random.next() % kNumbers * 8 + 7;
     const char damage = "\xff\x7f\0-n\xbf"[i % 6];
     std::string damaged = whole;
@@ -162,7 +162,7 @@ class HostileCommandLine : public testing::Test {
     return folder_ / name;
   }
 
-  /// Its output is what it says on the stream of errors.
+  /// Runs burnish and returns its standard error as the output.
   static Outcome run_burnish(const std::string& arguments) {
     return run(fmt::format("'{}' {} 2>&1 >/dev/null", BURNISH_CLI, arguments));
   }

@@ -1,4 +1,4 @@
-// What `burnish render` draws and refuses.
+// These tests check what `burnish render` draws and what it refuses.
 
 #include <cstdlib>
 #include <filesystem>
@@ -132,7 +132,7 @@ TEST_F(Render, RefusesWhatItCannotDrawAndLeavesNothing) {
 
 TEST_F(Render, FigureComparesVerticesWithPixels) {
   if (!has_opengl()) GTEST_SKIP() << "no OpenGL";
-  // a model is its own truth, so pixels are right and vertices are not
+  // The model is its own truth here, so pixels are right and vertices are not.
   ASSERT_EQ(
       renders(
           "--figure1 --mesh sphere --truth one.exr --model one.exr --tessellations 200,800 --figure-size 64 "

@@ -1,4 +1,4 @@
-// Real scattered samples keep the budget that they are given.
+// These tests fit real scattered samples within given budgets.
 
 #include <cmath>
 #include <vector>
@@ -39,7 +39,7 @@ TEST(Scattered, EveryFileKeepsItsBudgets) {
   EXPECT_GT(files, 0u);
 }
 
-// The height of a tape's peak: samples nearest to wi = wo at each incidence, by their own values.
+// At each incidence, the sample nearest to wi = wo tests the height of the tape's peak.
 TEST(Scattered, TheDefaultFitHoldsATapesPeak) {
   BURNISH_SKIP_WHERE_SANITIZED();
   BURNISH_NEEDS_DATA();
@@ -63,7 +63,7 @@ TEST(Scattered, TheDefaultFitHoldsATapesPeak) {
     EXPECT_NEAR(f[0] / samples.at(best)[0], 1, 0.05) << theta_deg;
   }
 
-  // two fetches hold it too
+  // A fit with two fetches keeps the peak too.
   const Fit few = fit(source, {.form = Budget{.bytes = 4096, .fetches = 2}});
   EXPECT_LE(std::get<OneLobeReport>(few.report.how).relative_cross_validated.value(), 0.12);
 }

@@ -1,4 +1,4 @@
-// The `specular` verb as a user runs it.
+// These tests run the `specular` verb as a user does.
 #include <cstdlib>
 #include <string>
 

@@ -1,4 +1,4 @@
-// burnish measure --surface and fit-surface, as people call them.
+// These tests run `burnish measure --surface` and `fit-surface` as users do.
 
 #include <algorithm>
 #include <filesystem>
@@ -32,7 +32,7 @@ class SurfaceCommand : public testing::Test {
     EXPECT_THAT(made.output, HasSubstr("18 pictures of 20 x 20 texels"));
   }
   fs::path file(const std::string& name) const { return folder_.path / name; }
-  /// {0} is the folder.
+  /// Runs burnish; {0} is the folder.
   Outcome burnish(const std::string& arguments) const {
     return run(fmt::format("'{}' {} 2>&1", BURNISH_CLI,
                            fmt::format(fmt::runtime(arguments), folder_.path.string())));
@@ -55,7 +55,7 @@ TEST_F(SurfaceCommand, FitsWhatWasMeasured) {
   EXPECT_EQ(parse_surface(read_file(file("wall.burnish"))).brdf.width(), 20);
   EXPECT_TRUE(fs::exists(file("wall.png")));
   EXPECT_FALSE(fs::exists(file("wall.burnish.part")));
-  // the same file again, by one thread and few bytes at a time
+  // One thread with few bytes at a time writes the same file again.
   const std::string bytes = read(file("wall.burnish"));
   const Outcome again = burnish(std::string(kFit) + " --compare --threads 1 --memory 20K");
   EXPECT_EQ(again.status, 0);
@@ -79,7 +79,7 @@ TEST_F(SurfaceCommand, CountsOneAsOne) {
               testing::AllOf(HasSubstr("dB of 1 picture"), testing::Not(HasSubstr("1 pictures"))));
 }
 
-// Of a black surface, a texel of which is masked.
+// The surface is black, and one of its texels is masked.
 TEST_F(SurfaceCommand, SaysWhatIsExactAndWithoutData) {
   write(file("black.json"), R"({"version":1,"width":8,"height":8,"materials":["lambert:kd=0"],)"
                             R"("lights":{"count":8},"views":{"count":1},"held_out":4})");
@@ -110,7 +110,7 @@ TEST_F(SurfaceCommand, SurfacesBecomeTheirOtherFileAndTheirTexelsModels) {
   EXPECT_EQ(burnish("info '{0}/wall.exr'").status, 0);
   EXPECT_THAT(burnish("convert '{0}/wall.exr' '{0}/wall.binary'").output,
               HasSubstr("surface:FILE#COLUMN,ROW"));
-  // one texel
+  // These verbs use one texel.
   for (const char* verb : {"eval 'surface:{0}/wall.exr#3,4' '{0}/directions.csv' -o '{0}/values.csv'",
                            "convert 'surface:{0}/wall.burnish#3,4' '{0}/texel.burnish'",
                            "compare '{0}/texel.burnish' 'surface:{0}/wall.exr#3,4'"}) {
@@ -133,7 +133,7 @@ TEST_F(SurfaceCommand, SurfacesAreDescribedAndDrawn) {
   EXPECT_EQ(says["lobes"], 2);
   EXPECT_EQ(says["weights"].size(), 2u);
   EXPECT_GT(says["albedo"]["largest"].get<double>(), 0.1);
-  // near and far, where mip levels are seen
+  // Two tessellations of the plane are drawn. Mip levels show in the distance.
   for (const char* vertices : {"100", "400"}) {
     const Outcome drawn =
         burnish(fmt::format("render --mesh plane --vertices {} --renderer cpu --size 24 --samples 1 "
@@ -143,7 +143,7 @@ TEST_F(SurfaceCommand, SurfacesAreDescribedAndDrawn) {
     EXPECT_EQ(drawn.status, 0) << drawn.output;
   }
   EXPECT_TRUE(fs::exists(file("wall100.png")));
-  // what is damaged is refused in one line
+  // A damaged surface is refused in one line.
   const std::string bytes = read(file("wall.burnish"));
   write(file("cut.burnish"), bytes.substr(0, bytes.size() / 2));
   for (const char* arguments :
@@ -188,7 +188,7 @@ TEST_F(SurfaceCommand, WritesOverNothingThatItReads) {
     EXPECT_EQ(outcome.output, status == 1 ? line : line + "Run with --help for more information.\n");
     EXPECT_THAT(line, HasSubstr(why)) << arguments;
   };
-  // by names, before the capture is looked for
+  // These outputs are refused by name, before the capture is looked for.
   for (const char* name : {"w.png", "capture/capture.json"})
     refused(2, fmt::format("none' -o '{{0}}/{}'", name),
             "--output: expected a name such as wall.burnish, found");
@@ -198,7 +198,7 @@ TEST_F(SurfaceCommand, WritesOverNothingThatItReads) {
   refused(2, "none' -o '{0}/w' --picture '{0}/capture/../w'",
           "--picture: expected another file than --output");
 
-  // by what they are, whatever their names
+  // These outputs are refused by their content, whatever their names.
   const std::string form = read(file("capture/capture.json")), picture = read(file("capture/00001.exr"));
   fs::create_symlink("capture/00001.exr", file("linked"));
   fs::create_hard_link(file("capture/capture.json"), file("form.png"));
@@ -207,7 +207,7 @@ TEST_F(SurfaceCommand, WritesOverNothingThatItReads) {
   refused(1, "capture' -o '{0}/linked'", "linked: expected a file to write that is not read, found one of");
   refused(1, "capture' -o '{0}/w' --picture '{0}/form.png'",
           "form.png: expected a file to write that is not");
-  fs::create_hard_link(file("capture/00002.exr"), file("v.part"));  // what a fit that begins anew removes
+  fs::create_hard_link(file("capture/00002.exr"), file("v.part"));  // a fit that begins anew removes it
   refused(1, "capture' -o '{0}/v'", "v.part: expected a file to write that is not read, found one of");
   EXPECT_TRUE(fs::exists(file("v.part")));
   EXPECT_EQ(read(file("capture/00001.exr")), picture);

@@ -1,4 +1,4 @@
-// Generated GLSL ES in a browser: WebGL2 draws into floats, which are read back.
+// These tests run generated GLSL ES in a browser: WebGL2 draws into floats, which are read back.
 
 #include <cmath>
 
@@ -18,11 +18,11 @@ TEST(WebGl, AgreesWithTheDefinitionInEveryVariant) {
   const TemporaryFolder folder("webgl");
   const auto worst = run_webgl(kModelCases, 64, folder.path);
   ASSERT_EQ(worst.size(), std::size(kModelCases));
-  // as in kShaderVariants; half floats may add 2e-3
+  // The bounds are those of kShaderVariants; half floats may add 2e-3.
   constexpr VariantErrors kMax = {1e-5, 2e-3, 5e-3, 7e-3};
   for (std::size_t i = 0; i < worst.size(); ++i)
     for (std::size_t k = 0; k < kMax.size(); ++k) {
-      if (k == 2 && std::isnan(worst[i][k])) continue;  // floats need not be filtered in WebGL2
+      if (k == 2 && std::isnan(worst[i][k])) continue;  // WebGL2 need not filter floats
       EXPECT_LE(worst[i][k], kMax[k]) << kModelCases[i].name << " variant " << k;
     }
 }

@@ -1,7 +1,7 @@
-// The frame of an engine that shades on the processor: a material is loaded once, then each frame collects the pairs of
-// directions that its lights need, evaluates all of them in one call, and adds them up.
+// This is the frame of an engine that shades on the processor. A material is loaded once. Each frame then collects the
+// pairs of directions that its lights need, evaluates all of them in one call, and adds them up.
 //
-//   engine_loop paint.burnish [FRAMES]
+//     engine_loop paint.burnish [FRAMES]
 //
 // Build it against an installed burnish: find_package(burnish), target_link_libraries(app burnish::burnish).
 #include <algorithm>
@@ -24,12 +24,12 @@ struct Light {
   float strength;
 };
 
-// What a deferred renderer has at a pixel: the normal, and a tangent that the material's grain follows.
+// The data of a deferred renderer at a pixel: the normal, and a tangent that the material's grain follows.
 struct Pixel {
   burnish::Vec3 normal, tangent;
 };
 
-// A sphere seen along -z; pixels beside it are missing.
+// Returns the pixels of a sphere seen along -z; pixels beside it are missing.
 std::vector<Pixel> visible_pixels() {
   std::vector<Pixel> pixels;
   for (int row = 0; row < kSide; ++row)
@@ -43,10 +43,10 @@ std::vector<Pixel> visible_pixels() {
   return pixels;
 }
 
-// The rows that one frame hands to the evaluator, kept from frame to frame so that nothing is allocated again.
+// The rows that one frame evaluates. They are kept from frame to frame, so that nothing is allocated again.
 struct Batch {
   std::vector<float> wi, wo, f;
-  std::vector<std::size_t> pixel;  // whose pair it is
+  std::vector<std::size_t> pixel;  // the pair's pixel
   std::vector<float> weight;       // cosine times the light's strength
 
   void clear() {
@@ -70,7 +70,7 @@ struct Batch {
   }
 };
 
-// Adds a frame's light to the picture, one row of channels a pixel; returns how many pairs it took.
+// Adds a frame's light to the picture, one row of channels a pixel. Returns how many pairs it took.
 std::size_t shade(const burnish::FactoredEvaluator& material, const std::vector<Pixel>& pixels,
                   const std::vector<Light>& lights, Batch& batch, std::vector<float>& picture) {
   const std::size_t channels = material.channels();
@@ -86,7 +86,7 @@ std::size_t shade(const burnish::FactoredEvaluator& material, const std::vector<
   return batch.pixel.size();
 }
 
-// The largest relative difference of a frame's values from the model's definition in double precision.
+// Returns the largest relative difference of a frame's values from the model's definition in double precision.
 double largest_error(const burnish::FactoredBrdf& definition, const Batch& batch) {
   double largest = 0;
   std::vector<double> exact(definition.channels());
@@ -103,7 +103,7 @@ double largest_error(const burnish::FactoredBrdf& definition, const Batch& batch
 
 void run(const char* file, int frames) {
   const burnish::Model model = burnish::parse_model(burnish::read_file(file));
-  const burnish::FactoredEvaluator material(model.brdf);  // once a material; threads may share it
+  const burnish::FactoredEvaluator material(model.brdf);  // made once a material; threads may share it
   const std::vector<Pixel> pixels = visible_pixels();
   std::vector<float> picture;
   Batch batch;

@@ -1,5 +1,5 @@
-// A measurement in another format, with burnish::io: convert_file FILE FORMAT RESULT, a format of kConvertFormats. Prints
-// what the result says less than the file does.
+// Converts a measurement to another format with burnish::io: convert_file FILE FORMAT RESULT. The format is one of
+// kConvertFormats. Prints what the result loses.
 #include <cstdio>
 #include <exception>
 

@@ -1,5 +1,5 @@
-// A picture of a material by ray casting, with burnish::render: draw_sphere MATERIAL RESULT.png, where the material is
-// what open_source takes.
+// Draws a material by ray casting with burnish::render: draw_sphere MATERIAL RESULT.png. The material is anything that
+// open_source accepts.
 #include <array>
 #include <cstdio>
 #include <exception>

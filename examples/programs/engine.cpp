@@ -1,6 +1,6 @@
-// A renderer's use of a model, with burnish::eval alone: engine MODEL.burnish. Reads the file, lights a sphere with it
-// and writes the picture to engine.ppm in the current folder, a row of pixels at a time; then prints how long the first
-// value took since the program began, and how long a million values take.
+// Uses a model as a renderer does, with burnish::eval alone: engine MODEL.burnish. Reads the file and lights a sphere
+// with it, a row of pixels at a time. Writes the picture to engine.ppm in the current folder. Prints the time from the
+// program's start to the first value, and the time of a million values.
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -19,11 +19,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Before main: what starting the program takes besides is the system's.
+// The clock starts before main; the rest of a program's start belongs to the system.
 const Clock::time_point kStart = Clock::now();
 
 constexpr int kSide = 256;                         // pixels
-constexpr float kLight[3] = {0.48f, 0.64f, 0.6f};  // where it comes from, a unit vector
+constexpr float kLight[3] = {0.48f, 0.64f, 0.6f};  // a unit vector to the light
 constexpr float kIntensity = 3.0f;
 
 struct Vector {
@@ -43,7 +43,8 @@ Vector cross(Vector a, Vector b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// A row of the sphere's pixels as the model wants them: both directions in the frame of the surface, and their place.
+// A row of the sphere's pixels as the model expects them: both directions in the frame of the surface, and their
+// columns.
 struct Row {
   std::vector<int> columns;
   std::vector<float> wi, wo, cosines;
@@ -80,7 +81,7 @@ std::uint8_t encoded(float linear) {
   return static_cast<std::uint8_t>(std::lround(255 * srgb));
 }
 
-// Three bytes a pixel; a model of one channel is grey.
+// Returns three bytes a pixel; a model of one channel is grey.
 std::string picture(const burnish::FactoredEvaluator& evaluator) {
   const std::size_t channels = evaluator.channels();
   std::string bytes(std::size_t{3} * kSide * kSide, '\0');
@@ -110,7 +111,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Of a million values, in blocks that fit the cache.
+// Returns the seconds of a million values, in blocks that fit the cache.
 double seconds_of_a_million(const burnish::FactoredEvaluator& evaluator) {
   const Row row = row_of_sphere(kSide / 2);
   std::vector<float> values(evaluator.channels() * row.columns.size());

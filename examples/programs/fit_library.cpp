@@ -1,5 +1,5 @@
-// Materials fitted one after the other into a folder with a page and a table of figures, with burnish::library:
-// fit_library FOLDER MATERIAL..., where each material is what open_source takes.
+// Fits materials one after the other into a folder with a page and a table of figures, with burnish::library:
+// fit_library FOLDER MATERIAL... Each material is anything that open_source accepts.
 #include <cstdio>
 #include <exception>
 #include <string>

@@ -1,4 +1,4 @@
-// A program's own BRDF as a model, with burnish::fit: no file is read.
+// Fits a program's own BRDF with burnish::fit, without reading a file.
 #include <cstdio>
 #include <exception>
 
@@ -14,7 +14,7 @@ int main() {
     const burnish::Source paint{.name = "paint",
                                 .brdf = burnish::parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2"),
                                 .findings = {}};
-    // one lobe, a product of two tables, by few pairs: a moment's work
+    // One lobe, a product of two tables, is fitted to few pairs, so the fit takes a moment.
     burnish::FitOptions options;
     options.form = burnish::OneLobe{};
     options.samples = 20'000;

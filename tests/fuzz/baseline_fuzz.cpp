@@ -6,7 +6,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return burnish::fuzz(data, size, [](const burnish::FileBytes& file, const burnish::OpenOptions&) {
     const burnish::Baseline baseline = burnish::parse_baseline(file);
     burnish::check_values(burnish::baseline_ref(baseline.brdf));
-    // what was read can be written
+    // A parsed baseline can be written.
     burnish::format_baseline(baseline);
   });
 }

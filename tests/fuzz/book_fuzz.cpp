@@ -6,7 +6,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return burnish::fuzz(data, size, [](const burnish::FileBytes& file, const burnish::OpenOptions&) {
     const burnish::MaterialBook book = burnish::parse_book(file);
     if (!book.materials().empty()) burnish::check_values(book.brdf(0));
-    // what is read can be written, and is then the same
+    // A parsed book can be written, and reads back equal.
     const std::string again = burnish::format_book(book);
     const auto* bytes = reinterpret_cast<const std::byte*>(again.data());
     if (burnish::parse_book({"written file", {bytes, bytes + again.size()}}) != book) __builtin_trap();

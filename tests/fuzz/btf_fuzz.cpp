@@ -6,7 +6,7 @@
 
 #include "fuzz_reader.h"
 
-// Texels are read from a file on disk, so each input is one.
+// The reader takes texels from a file on disk, so each input becomes a file.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("burnish_btf_fuzz_" + std::to_string(getpid()));

@@ -5,7 +5,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return burnish::fuzz(data, size, [](const burnish::FileBytes& file, const burnish::OpenOptions&) {
     const burnish::CaptureForm form = burnish::parse_capture(file);
-    // what is read can be written, and is then the same
+    // A parsed capture can be written, and reads back equal.
     const std::string again = burnish::format_capture(form);
     const auto* bytes = reinterpret_cast<const std::byte*>(again.data());
     const burnish::CaptureForm second =

@@ -5,7 +5,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return burnish::fuzz(data, size, [](const burnish::FileBytes& file, const burnish::OpenOptions&) {
-    // what is read can be written, and is then the same
+    // A parsed checkpoint can be written, and reads back equal.
     const auto again = [](const std::string& text) {
       const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
       return burnish::FileBytes{"written file", {bytes, bytes + text.size()}};

@@ -14,7 +14,7 @@
 
 namespace burnish {
 
-/// Traps unless the source is finite, and nowhere negative but in its raw values.
+/// Traps unless the source's values are finite. Values may be negative only where they are raw.
 inline void check_values(BrdfRef source) {
   std::vector<double> f(source.channels());
   for (const double theta : {0.0, 0.7, 1.5707})
@@ -38,7 +38,7 @@ void check(const T& table) {
   check_values(table);
 }
 
-/// Any bytes either throw Error or make a source with sound values; any other exception ends the run. The
+/// Checks that any bytes either throw Error or make a source with sound values. Another exception ends the run. The
 /// size picks the options.
 template <class Parse>
 int fuzz(const std::uint8_t* data, std::size_t size, const Parse& parse) {

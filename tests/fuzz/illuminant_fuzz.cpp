@@ -5,7 +5,7 @@
 
 #include "fuzz_reader.h"
 
-// A light makes finite weights of any wavelengths, which sum to white.
+// Checks that a light gives finite weights at any wavelengths, and that they sum to white.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return burnish::fuzz(data, size, [](const burnish::FileBytes& file, const burnish::OpenOptions&) {
     const burnish::Illuminant light = burnish::parse_illuminant(file);

@@ -1,4 +1,4 @@
-// make_seeds DIR writes DIR/NAME/NAME, a small valid file for each fuzzed reader, and all of them to
+// make_seeds DIR writes DIR/NAME/NAME, a small valid file for each fuzzed reader. It also writes all of them to
 // DIR/source.
 #include <filesystem>
 

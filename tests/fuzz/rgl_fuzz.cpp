@@ -8,7 +8,7 @@
 
 using namespace burnish;
 
-// Any bytes either throw Error or make a table that evaluates to finite values and survives writing.
+// Checks that any bytes either throw Error or make a table with finite values that survives writing.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const auto* bytes = reinterpret_cast<const std::byte*>(data);
   const FileBytes file{"fuzz.bsdf", {bytes, bytes + size}};

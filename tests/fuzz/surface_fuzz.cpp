@@ -6,7 +6,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return burnish::fuzz(data, size, [](const burnish::FileBytes& file, const burnish::OpenOptions&) {
     const burnish::SurfaceModel surface = burnish::parse_surface(file);
     burnish::check_values(surface.brdf.at(0.3, 0.7, 0.5));
-    // what is read can be written, and is then the same
+    // A parsed surface can be written, and reads back equal.
     for (const std::string& again :
          {burnish::format_surface(surface), burnish::format_surface_exr(surface)}) {
       const auto* bytes = reinterpret_cast<const std::byte*>(again.data());

@@ -2,7 +2,7 @@
 
 #include "fuzz_reader.h"
 
-// What is read is written and read again.
+// A parsed tree is written and read again.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return burnish::fuzz(data, size, [](const burnish::FileBytes& file, const burnish::OpenOptions& options) {
     const burnish::TensorTree tree = burnish::parse_tensor_tree(file, options).table;

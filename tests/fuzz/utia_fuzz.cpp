@@ -2,7 +2,7 @@
 
 #include "fuzz_reader.h"
 
-// The bytes over and over, as many as a table has.
+// A table's fixed number of bytes is filled with the input, repeated.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kBytes = 3 * 288 * 288 * sizeof(double);
   if (size == 0) return 0;

@@ -1,4 +1,4 @@
-// A program of somebody else's: it does what the README shows, and compares with the definition.
+// A program outside this repository: it runs the README's example and compares it with the definition.
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -6,7 +6,7 @@
 #include <burnish/burnish.h>
 
 int main() {
-  // a million pairs: the light goes round a tilted circle, the viewer from the normal to the horizon
+  // The million pairs have the light on a tilted circle and the viewer from the normal to the horizon.
   std::vector<float> wi, wo;
   for (int i = 0; i < 1'000'000; ++i) {
     const double phi = 1e-3 * i, theta = 1.5e-6 * i;
@@ -15,7 +15,7 @@ int main() {
     for (const double x : {std::sin(theta), 0.0, std::cos(theta)}) wo.push_back(static_cast<float>(x));
   }
 
-#include "readme_example.inc"  // install_test.cmake takes it from there
+#include "readme_example.inc"  // taken from the README by install_test.cmake
 
   for (std::size_t i = 0; i < 3'000'000; i += 3'000) {
     double expected[3];

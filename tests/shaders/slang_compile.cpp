@@ -1,6 +1,6 @@
-// Compiles shaders `main`, fragment shaders or for CUDA kernels, by Slang's library: slang_compile LIBRARY TARGET FILE...
-// writes FILE.TARGET, prints what Slang says of each file that it refuses, and exits with 1 if there was one. compile.py builds and runs it. What
-// Slang makes is left to the end of the process.
+// Compiles shaders `main` with Slang's library, fragment shaders or, for CUDA, kernels: slang_compile LIBRARY TARGET
+// FILE... It writes FILE.TARGET, and prints Slang's message for each file that it refuses. It exits with 1 if Slang
+// refused a file. compile.py builds and runs it. Slang's objects live until the process ends.
 
 #include <cstdio>
 #include <fstream>
@@ -17,7 +17,7 @@ const char* text_of(slang::IBlob* said) {
   return said ? static_cast<const char*>(said->getBufferPointer()) : "no reason given";
 }
 
-// Returns the code, or nothing after it printed why there is none.
+// Returns the code, or null after it printed the reason.
 slang::IBlob* compiled(slang::ISession* session, const std::string& file, SlangStage stage) {
   std::ifstream in(file);
   const std::string text(std::istreambuf_iterator<char>(in), {});
@@ -33,7 +33,7 @@ slang::IBlob* compiled(slang::ISession* session, const std::string& file, SlangS
   }
   if (program) program->link(&linked, &said);
   if (linked) linked->getEntryPointCode(0, 0, &code, &said);
-  // A zero byte ends each message, which has lines of its own.
+  // A zero byte ends each message, which may have several lines.
   if (!code) std::printf("%s: %s\n%c", file.c_str(), text_of(said), 0);
   return code;
 }
@@ -52,7 +52,7 @@ int main(int count, char** words) {
     std::printf("%s: expected Slang's library, found none\n", words[1]);
     return 2;
   }
-  // Targets are named as slangc names them; SPIR-V and the others want a profile of their own.
+  // Targets have slangc's names. SPIR-V and other targets need a profile of their own.
   const std::string target = words[2];
   slang::TargetDesc to{};
   to.format = target == "spirv"   ? SLANG_SPIRV

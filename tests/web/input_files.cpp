@@ -1,5 +1,5 @@
-// Files that a page is given: a small valid one of every format, and pictures of light in every compression of OpenEXR
-// that the studio reads, each beside what OpenEXR makes of it. For tests/web/studio.mjs.
+// Writes the files that a page opens in tests/web/studio.mjs. They are a small valid one of every format, and pictures
+// of light in every OpenEXR compression that the studio reads. Beside each picture stands OpenEXR's reading of it.
 
 #include <cmath>
 #include <filesystem>
@@ -33,7 +33,7 @@ void write(const fs::path& file, std::string_view bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-// A picture of three channels, halves in red and green and floats in blue.
+// A picture of three channels: halves in red and green, floats in blue.
 struct Picture {
   static constexpr int kWidth = 801, kHeight = 45;  // sides that no block divides
 
@@ -60,7 +60,7 @@ Imf::Header header_of(Imf::Compression compression) {
   return header;
 }
 
-// Light that differs at every pixel.
+// Returns light that differs at every pixel.
 Picture light() {
   Picture picture;
   for (int y = 0, i = 0; y < Picture::kHeight; ++y)
@@ -84,14 +84,14 @@ void write_tiles(const fs::path& file, Picture picture, Imf::Compression compres
   header.setTileDescription(Imf::TileDescription(64, 32, levels));
   Imf::TiledOutputFile output(file.c_str(), header);
   output.setFrameBuffer(picture.frame());
-  // smaller levels hold the picture's corner: what is drawn is the largest
+  // Smaller levels hold the picture's corner; the studio shows the largest level.
   for (int y = 0; y < output.numYLevels(); ++y)
     for (int x = 0; x < output.numXLevels(); ++x)
       if (levels == Imf::RIPMAP_LEVELS || x == y)
         output.writeTiles(0, output.numXTiles(x) - 1, 0, output.numYTiles(y) - 1, x, y);
 }
 
-// What OpenEXR reads, without a compression.
+// Writes OpenEXR's reading of a file, without compression.
 void write_read(const fs::path& from, const fs::path& to) {
   Picture picture;
   Imf::InputFile input(from.c_str());
@@ -120,8 +120,8 @@ void write_pictures(const fs::path& folder) {
     write_read(folder / fmt::format("light-{}.exr", name), folder / fmt::format("read-{}.exr", name));
 }
 
-// A surface without frames, and what it reflects straight back at the place and level of a pixel: of one seen and lit
-// from the front, 8 x 8 pixels, the one right of and below the middle.
+// Writes a surface without frames, and its value for reflection straight back at one pixel's place and level. The
+// surface is seen and lit from the front with 8 x 8 pixels. The pixel lies right of and below the middle.
 void write_flat(const fs::path& folder) {
   const SpatialBrdf framed = random_surface(32, 16);
   const SpatialBrdf flat(framed.lobes(), {.weights = framed.maps().weights, .normals = {}, .tangents = {}});
@@ -131,7 +131,7 @@ void write_flat(const fs::path& folder) {
   write(folder / "flat.txt", fmt::format("{:.9g}", f[0]));
 }
 
-// A code of Neural Processes beside a decoder, as the command line takes them.
+// Writes a code of Neural Processes beside a decoder, as the command line reads them.
 void write_np(const fs::path& folder) {
   fs::create_directories(folder);
   write(folder / "codes.csv", seeds::kNpCode);

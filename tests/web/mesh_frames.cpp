@@ -1,6 +1,6 @@
-// burnish_mesh_frames MESH VERTICES: corners of triangles for tests/web/frames.mjs, to standard output: 15
-// floats each, position, normal, texture coordinates, the tangent and side that finish_mesh finds from these,
-// and the tangent that the renderer has, which for built-in meshes is that of the exact surface.
+// burnish_mesh_frames MESH VERTICES prints the corners of triangles for tests/web/frames.mjs, 15 floats each. They are
+// position, normal, texture coordinates, the tangent and side that finish_mesh computes from these, and the renderer's
+// tangent. For built-in meshes the renderer's tangent is that of the exact surface.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
