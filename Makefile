@@ -1,30 +1,32 @@
-# make demo   installs packages, builds the command line, and takes a measurement to two textures (INPUT=file for your own)
-# make test   installs tools, builds with sanitizers and optimized, runs every test
-# make check  a quick look: one build, unit tests, documents
-# make python the Python package in build/venv, tested
-# make build  the command line at build/release/apps/burnish/burnish
-# make deb, make wheel, make sdist, make npm: packages in build/packages; make release: all of them, the sources and the
-# page too; make release-check installs each in an empty system and runs it, and builds and tests on bare systems
-# make studio the library as WebAssembly, its npm package and the page in build/studio; make studio-test tests them
-# make bench, make compile-cost, make fuzz, make damaged, make report, make cost-report, make sampling-report, make area-light-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
-# see CONTRIBUTING.md
-# make site   all documents as a searchable site in build/site, the studio beside them where build/studio is
-# make cluster-test  a batch on a real Slurm of two nodes on this machine, killed now and then
+# make demo    installs packages, builds the command line, takes a measurement to two textures (INPUT=file)
+# make test    installs tools, builds with sanitizers and optimized, runs every test
+# make check   takes a quick look: one build, unit tests, documents
+# make python  installs the Python package into build/venv and tests it
+# make build   builds the command line: build/release/apps/burnish/burnish
+# make deb, make wheel, make sdist, make npm   make packages in build/packages
+# make release         makes all packages, the sources and the page
+# make release-check   installs each in an empty system and runs it, and builds and tests on bare systems
+# make studio          builds the library as WebAssembly, its npm package and the page in build/studio
+# make studio-test     tests them
+# make site            builds all documents as a searchable site in build/site, beside the studio where build/studio is
+# make cluster-test    runs a batch on a real Slurm of two nodes on this machine, killed now and then
+# CONTRIBUTING.md describes make bench, compile-cost, fuzz, damaged, report, cost-report, sampling-report,
+# area-light-report, shader-report, openpbr-report, frame-cost, surface-report, hw-report, hw-exhaustive and format.
 .PHONY: check test-announcement cluster-test compile-cost demo test build reports python deb wheel sdist npm source-archive packaging-deps release release-check studio studio-test build-deps deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report area-light-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api options site site-check
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
 SOURCES = $(shell find src apps tests examples python -name '*.h' -o -name '*.cpp')
-# Warnings are errors in the preset dev and where this is ON, as in CI: compilers of other systems warn of other things.
+# Warnings are errors in the preset dev and where this is ON, as in CI. Compilers of other systems have other warnings.
 WERROR ?= OFF
-# What configures the preset dev besides, in `make test`.
+# These options further configure the preset dev in `make test`.
 DEV_OPTIONS ?=
 INPUT ?=
 OUT ?= out/demo
 FUZZ_SECONDS ?= 60
 
-# build-deps: what the command line is built with; deps: and the Python package; test-deps: what everything else takes
-# besides; studio-deps: what the library as WebAssembly does.
+# Each target installs Debian packages. build-deps is for the command line, deps also for the Python package, test-deps
+# for everything else, and studio-deps for the library as WebAssembly.
 build-deps: PACKAGES := cmake/debian-packages.txt
 deps: PACKAGES := cmake/debian-packages.txt cmake/debian-python-packages.txt
 test-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-python-packages.txt cmake/debian-test-packages.txt
@@ -39,7 +41,7 @@ build: build-deps
 reports: test-deps build
 	@cmake --build --preset programs -j $(JOBS) --target all
 
-# What compiling the command line takes where there is no compiler cache.
+# Prints the cost of compiling the command line without a compiler cache.
 compile-cost: build-deps
 	@rm -rf build/compile-cost && CCACHE_DISABLE=1 cmake --preset programs -B build/compile-cost > /dev/null
 	@bash -c 'TIMEFORMAT="%U s + %S s of the system, %R s by the clock"; \
@@ -48,8 +50,8 @@ compile-cost: build-deps
 demo: build
 	@examples/demo.sh "$(BURNISH)" "$(OUT)" "$(INPUT)"
 
-# A quick look before a commit: the optimized build once, unit tests but those with the label `long`, documents,
-# formatting where this clang-format is.
+# Takes a quick look before a commit: the optimized build once, unit tests except those with the label `long`, and
+# documents. It checks formatting where this clang-format is.
 CHECK_DEPS = cmake/debian-packages.txt cmake/debian-test-packages.txt
 check: docs-check include-check
 	@cmake/install_packages.sh $(CHECK_DEPS)
@@ -64,7 +66,7 @@ test-announcement:
 	@echo "Debian's packages are installed where they are missing (cmake/debian-*packages.txt),"
 	@echo "others from PyPI and npm into build/ (python/requirements.txt, tests/web/package.json, clang-format)."
 
-# How long `make test` has run when a step ends.
+# Prints how long `make test` has run when a step ends.
 STARTED := build/test-started
 done = echo "make test: $(1), $$(($$(date +%s) - $$(cat $(STARTED)))) s after its start"
 test: test-announcement test-deps format-check docs-check include-check
@@ -87,7 +89,7 @@ test: test-announcement test-deps format-check docs-check include-check
 python: test-deps build
 	@BURNISH_WERROR=$(WERROR) python/check.sh
 
-# Packages for people without a compiler.
+# These targets make packages for people without a compiler.
 RELEASE := build/packages
 PACKAGING := dpkg-dev file lintian debootstrap python3-venv
 packaging-deps:
@@ -97,7 +99,7 @@ deb: packaging-deps build
 	@rm -rf $(RELEASE)/*.deb && cpack --config build/release/CPackConfig.cmake -B $(CURDIR)/$(RELEASE) > /dev/null
 	@rm -rf $(RELEASE)/_CPack_Packages && ls $(RELEASE)/*.deb
 
-# PYTHONS: what wheels are made by; without it python3, and a newer one where python3 is older than 3.12.
+# PYTHONS names the Pythons that make wheels. The default is python3, and a newer one where python3 is older than 3.12.
 PYTHONS ?=
 wheel: packaging-deps deps
 	@BURNISH_WERROR=$(WERROR) python/wheel.sh $(RELEASE) $(PYTHONS)
@@ -109,7 +111,7 @@ npm: studio
 	@mkdir -p $(RELEASE) && rm -f $(RELEASE)/*.tgz
 	@npm pack --silent --pack-destination $(RELEASE) ./build/studio/package > /dev/null && ls $(RELEASE)/*.tgz
 
-# All that a release is, of the commit that is checked out, each named with its version.
+# A release is made of the commit that is checked out. Each of its files is named with the version.
 VERSION := $(shell sed -n 's/^project.burnish VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 source-archive:
 	@mkdir -p $(RELEASE)
@@ -156,7 +158,8 @@ bench: test-deps
 	@cmake --build --preset bench -j $(JOBS)
 	@build/bench/src/burnish/burnish_bench
 
-# Pages of docs/results, by what burnish_reports calls them. They name the last commit that changed what is measured.
+# Pages of docs/results are made by their names in burnish_reports. They state the last commit that changed the measured
+# code.
 MEASURED := src apps hw cmake
 COMMIT = $(shell git log -1 --format=%h -- $(MEASURED))$(shell git diff --quiet HEAD -- $(MEASURED) || echo " and changes")
 REPORTS := build/release/apps/reports/burnish_reports
@@ -204,7 +207,7 @@ docs-check:
 	@tests/docs/comments.py
 	@docs/api.py --check
 
-# The site of docs/, with its own packages of PyPI. site-check looks for violations of axe's rules in a browser.
+# Builds the site of docs/ with its own packages from PyPI. site-check looks for violations of axe's rules in a browser.
 site:
 	@tests/docs/site.sh
 

@@ -1,10 +1,11 @@
-# What packages hold besides programs, headers and libraries, and the Debian packages themselves (`make deb`).
+# Installs the further files of packages, besides programs, headers and libraries, and makes the Debian packages (`make
+# deb`).
 
-# The package's own version, and its changelog.
+# These lines set the package's own version and its changelog.
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 configure_file(cmake/debian-changelog.in debian-changelog @ONLY)
 
-# What every Debian package has to have, in its own folder of documents; compressed as Debian's policy asks.
+# Installs the documents that every Debian package must have, in its own folder, compressed by Debian's policy.
 function(burnish_debian_documents package component)
   install(CODE "
     set(folder \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/doc/${package}\")
@@ -15,18 +16,19 @@ function(burnish_debian_documents package component)
     execute_process(COMMAND gzip -9nf \"\${folder}/changelog\" \"\${folder}/changelog.Debian\"
       COMMAND_ERROR_IS_FATAL ANY)" COMPONENT ${component})
 endfunction()
-# The packages, and the component of each that has what there is once a package.
+# These lists name the packages and, for each, the component of files that are there once a package.
 set(burnish_debian_packages burnish libburnish-dev)
 set(burnish_debian_components programs burnish)
 foreach(package component IN ZIP_LISTS burnish_debian_packages burnish_debian_components)
   burnish_debian_documents(${package} ${component})
-  # nobody asked Debian for a first version
+  # Debian has no bug report that asks for the first version.
   file(WRITE ${PROJECT_BINARY_DIR}/lintian/${package} "${package}: initial-upload-closes-no-bugs\n")
   install(FILES ${PROJECT_BINARY_DIR}/lintian/${package} DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides
     COMPONENT ${component})
 endforeach()
 
-# What the command line says of itself, in the forms that a system looks for; compressed as Debian's policy asks.
+# Installs the command line's descriptions of itself in the forms that a system looks for, compressed by Debian's
+# policy.
 set(describe "\"$<TARGET_FILE:burnish_cli>\" describe")
 install(CODE "
   set(share \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\")
@@ -39,8 +41,9 @@ install(CODE "
   file(GLOB pages \"\${share}/man/man1/burnish*.1\")
   execute_process(COMMAND gzip -9nf \${pages} COMMAND_ERROR_IS_FATAL ANY)" COMPONENT programs)
 
-# For pkg-config, in the folder of an architecture where the system keeps several. It is found from where it lies.
-find_package(embree REQUIRED)  # for its version
+# Installs the file for pkg-config, in an architecture's folder where the system keeps several. The prefix is found
+# relative to the file's place.
+find_package(embree REQUIRED)  # gives its version
 cmake_path(SET burnish_pc_folder NORMALIZE lib/${CMAKE_LIBRARY_ARCHITECTURE}/pkgconfig)
 string(REGEX REPLACE "[^/]+" ".." burnish_pc_to_prefix ${burnish_pc_folder})
 set(burnish_pc_lapack "-llapack -lblas ")
@@ -50,8 +53,8 @@ endif()
 configure_file(cmake/burnish.pc.in burnish.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/burnish.pc DESTINATION ${burnish_pc_folder} COMPONENT burnish)
 
-# Two packages: burnish, of programs, manual pages and completions; libburnish-dev, of headers, the static libraries and
-# what finds them. `make build` makes both.
+# There are two packages. burnish has programs, manual pages and completions. libburnish-dev has headers, the static
+# libraries and the files that find them. `make build` builds both.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "burnish developers <burnish@example.org>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "measured reflectance as a few small positive textures")
@@ -78,7 +81,7 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libburnish-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-# What a program needs to link more than burnish::eval.
+# A program that links more than burnish::eval needs these packages.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libtbb-dev, libopenexr-dev, libpng-dev, libpugixml-dev, \
 libopenblas-serial-dev, libepoxy-dev, libembree-dev, libzstd-dev, libsqlite3-dev")
 include(CPack)

@@ -1,30 +1,30 @@
-# Flags every target of the project shares; call once on each target.
+# Sets the flags that all targets of the project share. Call it once for each target.
 function(burnish_target name)
   target_compile_features(${name} PUBLIC cxx_std_20)
   target_compile_options(${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
-    -Wno-missing-field-initializers  # designated initializers leave the rest at its defaults
+    -Wno-missing-field-initializers  # designated initializers leave other members at their defaults
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # false alarms of g++ 12 in <string>
-  # memory for time, a sixth of which the compiler else takes to free some
+  # More memory saves time: otherwise the compiler spends a sixth of it on freeing memory.
   target_compile_options(${name} PRIVATE
     "$<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-expand=300;--param=ggc-min-heapsize=500000>")
   if(BURNISH_WERROR)
     target_compile_options(${name} PRIVATE -Werror)
   endif()
   if(BURNISH_SANITIZE)
-    # g++ takes a third of its time for checks of each pointer: the address sanitizer sees null and ends of objects as
-    # well, and bytes become numbers by copies here. The fuzz preset, by clang, has all.
+    # g++ spends a third of its time on checks of each pointer. The address sanitizer sees null pointers and ends of
+    # objects as well, and this code turns bytes into numbers by copies. The fuzz preset, with clang, has all checks.
     target_compile_options(${name} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
       $<$<CXX_COMPILER_ID:GNU>:-fno-sanitize=null,alignment,object-size,vptr,pointer-overflow>)
     target_link_options(${name} PUBLIC -fsanitize=address,undefined)
   endif()
 endfunction()
 
-# Runs a program of GoogleTest tests in parts, side by side: starting it once a test takes longer than most tests,
-# with sanitizers above all. Only what fails or is skipped is printed.
-# GCC 12's leak check takes the thread-local memory of one library in 256, where the address happens to end in 0x010,
-# for that of a glibc of 2014 and reads at the size of a block of memory: it is told to leave such memory alone.
-# The tests that tests/sanitized/left_out.txt names run in parts of their own, with the label `long`, begun first; with
-# sanitizers they do not.
+# Runs a program of GoogleTest tests in parts, side by side. Starting it for each test takes longer than most tests,
+# above all with sanitizers. Only failed and skipped tests are printed.
+# GCC 12's leak check mistakes thread-local memory for that of a glibc of 2014 where the address ends in 0x010, for one
+# library in 256. It then reads at the size of a block of memory. An option makes it ignore this memory.
+# Tests in tests/sanitized/left_out.txt run in parts of their own, with the label `long`, and start first. With
+# sanitizers they do not run.
 function(burnish_tests name parts)
   set(list ${PROJECT_SOURCE_DIR}/tests/sanitized/left_out.txt)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${list})
@@ -36,7 +36,7 @@ function(burnish_tests name parts)
   endif()
 endfunction()
 
-# The tests of a program that a filter lets through, in parts NAME.0 and so on; further arguments: their properties.
+# Adds the tests that a filter selects, in parts NAME.0 and so on. Further arguments are the tests' properties.
 function(burnish_test_parts program name parts filter)
   math(EXPR last "${parts} - 1")
   foreach(part RANGE ${last})
@@ -46,8 +46,8 @@ GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${part};GTEST_BRIEF=1;ASAN_OPTIONS
   endforeach()
 endfunction()
 
-# Makes text files a part of a target: FUNCTION(), which the target declares, returns those that match the patterns, by
-# name, as std::span<const burnish::EmbeddedFile>.
+# Embeds text files in a target. FUNCTION(), which the target declares, returns the files that match the patterns,
+# sorted by name, as std::span<const burnish::EmbeddedFile>.
 function(burnish_embed target function)
   file(GLOB files CONFIGURE_DEPENDS ${ARGN})
   list(SORT files)
@@ -58,9 +58,9 @@ function(burnish_embed target function)
   target_sources(${target} PRIVATE ${output})
 endfunction()
 
-# The files of a folder are read by the compiler together, at most so many at a time: most of its work on each would
-# be the same headers. Arguments: a target of this directory, how many, then the files that stay alone. Files with
-# options of their own do anyway.
+# Compiles the files of a folder together, at most so many at a time, since most of the work on each would be the same
+# headers. Arguments are a target of this directory, the number, then the files that stay alone. Files with options of
+# their own stay alone too.
 function(burnish_unity target most)
   if(NOT BURNISH_UNITY)
     return()
@@ -85,13 +85,14 @@ function(burnish_unity target most)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# burnish_unity for files of several rings: those of a folder are read together whatever their ring, as far as it is the
-# same, and under names that do not depend on it: what changes its ring is compiled anew only with its neighbours.
-# Arguments: a name, how many at most, sources, the rings, then the files that stay alone. A source's ring is the list
-# RING_sources that has it. Files with options or definitions of their own do
-# anyway. What is to be compiled of a ring is NAME_RING_batches.
+# Does the same as burnish_unity for files of several rings. Files of a folder are compiled together as long as their
+# ring is the same. The names of batches do not depend on the ring, so a file that changes its ring is compiled again
+# with its neighbours alone.
+# Arguments are a name, the largest number, sources, the rings, then the files that stay alone. A source's ring is the
+# list RING_sources that holds it. Files with options or definitions of their own stay alone too. The function sets
+# NAME_RING_batches to the sources to compile for a ring.
 function(burnish_batches name most sources rings)
-  set(folder ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${name}.dir/Unity)  # as UNITY_BUILD of a target has it
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${name}.dir/Unity)  # as for a UNITY_BUILD target
   set(alone ${ARGN})
   foreach(source IN LISTS sources)
     foreach(ring IN LISTS rings)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# install_packages.sh LIST...: installs the Debian packages named in the files that are missing, and says first which
-# they are. Where none is missing it needs neither root nor apt. Where it cannot install, it says what is missing and
-# goes on: whoever has the libraries elsewhere can build, and CMake names the first that it does not find.
+# install_packages.sh LIST... installs the missing Debian packages among those that the files name, and names them
+# first. Where none is missing it needs neither root nor apt. Where it cannot install, it names the missing packages and
+# goes on. A machine may have the libraries elsewhere, and CMake names the first that it does not find.
 set -euo pipefail
 names=$(grep -hv '^#' "$@")
 if ! command -v dpkg-query > /dev/null; then
@@ -27,6 +27,6 @@ export DEBIAN_FRONTEND=noninteractive
 install() { "${as_root[@]}" apt-get install -y -qq --no-install-recommends "$@" > /dev/null; }
 echo "Installing by apt-get, with what they need: ${missing[*]}"
 "${as_root[@]}" apt-get update -qq || echo "The lists of packages cannot be renewed; trying with those that are there." >&2
-install "${missing[@]}" || for name in "${missing[@]}"; do  # without those that this system does not have
+install "${missing[@]}" || for name in "${missing[@]}"; do  # skips packages that this system does not have
   install "$name" || echo "Not available here: $name" >&2
 done

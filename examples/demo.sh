@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# demo.sh BURNISH OUT [INPUT]: takes a measurement to two positive textures and shows how good they are. Without INPUT a
-# virtual goniometer measures an anisotropic satin first.
+# demo.sh BURNISH OUT [INPUT] takes a measurement to two positive textures and prints their accuracy. Without INPUT, a
+# virtual goniometer first measures an anisotropic satin.
 set -euo pipefail
 burnish=$1 out=$2 input=${3:-}
 mkdir -p "$out"
@@ -20,7 +20,7 @@ echo "== Comparing with $reference"
 echo
 echo "The model:    $out/model.exr (any EXR viewer shows its textures)"
 echo "The pictures: $out/knot.png, $out/report/index.html, $out/report/overview.png"
-# The first model's members of the report, by name.
+# Reads the first model's members of the report, by name.
 awk -F '[ ":,]+' '!($2 in value) {value[$2] = $3}
   END {printf "The error:    psnr %.2f dB, ssim %.4f, relative %.4f, in %d bytes\n", value["psnr"], value["ssim"],
          value["relative"], value["bytes"]}' "$out/report/report.json"

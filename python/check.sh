@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Python package into build/venv and runs its tests against the command line of the release build.
-# With --skip-offline it says so and succeeds where PyPI cannot be reached.
+# Installs the Python package into build/venv and runs its tests against the command line of the release build. With
+# --skip-offline it says so and succeeds where PyPI cannot be reached.
 set -eu
 cd "$(dirname "$0")/.."
 venv=build/venv
@@ -12,13 +12,13 @@ if ! "${pip[@]}" install --only-binary :all: -r python/requirements.txt; then
   echo "python: SKIPPED: PyPI cannot be reached, so the Python package was neither built nor tested" >&2
   exit 0
 fi
-# The compiler and flags of the release build: ccache has its objects.
+# The compiler and flags are those of the release build, since ccache has its objects.
 CXX=${CXX:-c++} "${pip[@]}" install --no-build-isolation --no-deps --force-reinstall \
   --config-settings=cmake.define.BURNISH_WERROR="${BURNISH_WERROR:-OFF}" .
-# What C++ tests need of these packages: MaterialX, whose shader OpenPBR is held to.
+# These C++ tests need MaterialX, whose shader OpenPBR is compared with.
 tests=build/release/src/burnish/burnish_tests
 [ ! -x "$tests" ] || "$tests" --gtest_brief=1 --gtest_filter='GlOpenPbr.*'
-# The papers of a wheel name nanobind too, as it is installed here.
+# A wheel's notices also name nanobind, as installed here.
 status=0
 tests/notices/check.py --python "$(echo "$venv"/lib/python3*/site-packages)" || status=$?
 [ "$status" = 0 ] || [ "$status" = 77 ] || exit "$status"

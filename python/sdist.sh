@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# sdist.sh FOLDER: the source of the Python package, which pip builds with the packages that `make deps` installs.
+# sdist.sh FOLDER makes the source of the Python package. pip builds it with the packages that `make deps` installs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 venv=build/sdist-venv

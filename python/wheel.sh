@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# wheel.sh FOLDER [PYTHON...]: wheels that hold all they need but the C library, for a glibc as new as this machine's.
-# Each Python makes one: of 3.12 and newer it serves all later ones too (stable ABI), of an older one that one alone.
-# Without names: python3, and the first newer one that is here where python3 is older than 3.12.
-# Eigen stands in for LAPACK, which alone would be half of a wheel.
+# wheel.sh FOLDER [PYTHON...] makes wheels that hold all they need except the C library, for a glibc as new as this
+# machine's. Each Python makes one wheel. A wheel of 3.12 or newer serves all later Pythons (stable ABI), an older one
+# its own Python alone. Without names it uses python3, and the first newer Python here where python3 is older than 3.12.
+# Eigen replaces LAPACK, which alone would be half of a wheel.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-# version PYTHON: as 311; nothing where it does not run
+# version PYTHON prints the version, such as 311, or nothing where that Python does not run.
 version() { "$1" -c 'import sys; print("%d%d" % sys.version_info[:2])' 2> /dev/null || true; }
 
 folder=$1

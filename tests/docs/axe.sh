@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Opens pages of a site in Chromium, light, dark and as wide as a phone: tests/docs/axe.sh SITE [PICTURES]
-# Ends with 1 where axe finds a violation, a page is wider than the screen or asks another server for something.
-# Pictures of all go to PICTURES. Says so and succeeds where node, npm, Chromium or npm's registry cannot be reached.
+# Opens pages of a site in Chromium, light, dark and as wide as a phone: tests/docs/axe.sh SITE [PICTURES]. Ends with 1
+# where axe finds a violation, a page is wider than the screen, or a page asks another server for something. Pictures of
+# all pages go to PICTURES. Says so and succeeds where node, npm, Chromium or npm's registry cannot be reached.
 set -eu
 cd "$(dirname "$0")/../.."
 skip() {

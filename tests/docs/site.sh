@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the site into build/site and asks its search: tests/docs/site.sh [--skip-offline] [--no-notebooks]
-# Its packages are installed from PyPI into build/venv-site. With --skip-offline it says so and succeeds where PyPI cannot
-# be reached. Without node nobody asks the search, and it says so too.
+# Builds the site into build/site and tests its search: tests/docs/site.sh [--skip-offline] [--no-notebooks]. Its
+# packages are installed from PyPI into build/venv-site. With --skip-offline it says so and succeeds where PyPI cannot
+# be reached. Without node it does not test the search, and says so too.
 set -eu
 cd "$(dirname "$0")/../.."
 venv=build/venv-site offline=fail options=()

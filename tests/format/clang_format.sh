@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# clang_format.sh (-i | --check) FILE...: lays files out, or checks that they are, by clang-format 14. Other versions
-# differ in dozens of places. A system's own 14 serves; else it comes from PyPI, into build/format. Where neither can be
-# had, -i fails, and --check says SKIPPED and succeeds.
+# clang_format.sh (-i | --check) FILE... formats files, or checks their format, by clang-format 14. Other versions
+# differ in dozens of places. A system's own version 14 serves; otherwise it comes from PyPI, into build/format. Without
+# either, -i fails, and --check says SKIPPED and succeeds.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 version=14.0.6

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# run.sh [SECONDS]: builds every fuzzer and runs each for SECONDS (60) of the processor, as many at a time as there are
-# cores, printing what each tried. A find ends the run with the input in build/fuzz/finds. Corpora grow in
-# build/fuzz/corpus. BUILT=DIR runs the programs of a folder instead of building them.
+# run.sh [SECONDS] builds every fuzzer and runs each for SECONDS (60) of the processor, as many at a time as there are
+# cores. It prints the number of inputs of each. A find ends the run and leaves its input in build/fuzz/finds. Corpora
+# grow in build/fuzz/corpus. BUILT=DIR runs the programs of a folder instead of building them.
 set -euo pipefail
 seconds=${1:-60}
 cd "$(dirname "$0")/../.."
@@ -13,7 +13,7 @@ export build=${BUILT:-build/fuzz/tests/fuzz} corpus=build/fuzz/corpus seconds
 mkdir -p build/fuzz/finds
 "$build/make_seeds" "$corpus"
 
-# libFuzzer knows the clock only: what a busy machine kept from a fuzzer is given to it in further runs.
+# libFuzzer knows the clock alone. A busy machine takes time from a fuzzer, which gets it back in further runs.
 fuzz() {
   local name=$1 log=build/fuzz/$1.log used=0 inputs=0 TIMEFORMAT='%U %S'
   mkdir -p "$corpus/$name"

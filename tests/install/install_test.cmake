@@ -1,6 +1,6 @@
-# Installs BUILD under SCRATCH, compiles each installed header alone, then configures, builds and runs the consumer beside
-# this file, which holds the example of SOURCE/README.md. Then each part of the library: complete without outer ones, and
-# its program of examples/programs works.
+# Installs BUILD under SCRATCH and compiles each installed header alone. Then it configures, builds and runs the
+# consumer beside this file, which holds the example of SOURCE/README.md. Then it checks that each part of the library
+# is complete without outer parts, and that its program of examples/programs works.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output
     WORKING_DIRECTORY ${SCRATCH})
@@ -31,7 +31,7 @@ file(WRITE ${SCRATCH}/readme_example.inc "${CMAKE_MATCH_1}")
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${SCRATCH}/consumer -G ${GENERATOR}
   -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix -DEXAMPLE_FOLDER=${SCRATCH})
 run(${CMAKE_COMMAND} --build ${SCRATCH}/consumer)
-# the example's measurement: few scattered samples, which are fitted in a moment
+# The example's measurement has few scattered samples, which are fitted in a moment.
 run(${SCRATCH}/prefix/bin/burnish measure ggx:alpha_x=0.3,alpha_y=0.3 -o paint.csv --count 2000)
 run(${CMAKE_COMMAND} -E rename paint.csv paint.binary)
 run(${SCRATCH}/consumer/consumer)
@@ -40,7 +40,7 @@ if(NOT output MATCHES "^burnish evaluates a model whose file has [1-9][0-9]* byt
 endif()
 run(${SCRATCH}/prefix/bin/burnish --help)
 
-# burnish.pc finds the prefix from where it lies itself, and what it says builds the same program.
+# burnish.pc finds the prefix from its own place, and its flags build the same program.
 find_program(pkg_config NAMES pkg-config pkgconf REQUIRED)
 file(GLOB_RECURSE pc ${SCRATCH}/prefix/lib/burnish.pc)
 cmake_path(GET pc PARENT_PATH pc_folder)
@@ -56,8 +56,8 @@ separate_arguments(pc_flags UNIX_COMMAND "${output}")
 run(${COMPILER} -std=c++20 -I ${SCRATCH} ${CMAKE_CURRENT_LIST_DIR}/consumer.cpp ${pc_flags} -o by_pkg_config)
 run(${SCRATCH}/by_pkg_config)
 
-# Every object of burnish::eval links with the standard library alone, and of the others with their own part's libraries:
-# nothing calls outward.
+# Every object of burnish::eval must link with the standard library alone, and objects of other parts with their own
+# part's libraries. So nothing calls outward.
 set(engine ${SCRATCH}/engine)
 set(library_folder ${SCRATCH}/prefix/${LIBRARY_FOLDER})
 file(WRITE ${SCRATCH}/empty.cpp "int main() {}\n")
@@ -75,7 +75,7 @@ target_link_libraries(whole PRIVATE -Wl,--whole-archive ${library_folder}/libbur
   run(${CMAKE_COMMAND} --build whole_${part}/built)
 endforeach()
 
-# burnish::eval is found where no other library is, and its program has none of them.
+# burnish::eval must be found without any other library, and its program must need none.
 run(${CMAKE_COMMAND} -S ${SOURCE}/examples/programs -B ${engine} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
   -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix -DPARTS=eval
   -DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenEXR=ON -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON
@@ -98,7 +98,7 @@ if(size_of_engine GREATER 2097152)
   message(FATAL_ERROR "engine: expected at most 2 MiB, found ${size_of_engine} bytes")
 endif()
 
-# The other parts' programs, each on what the ones before it wrote.
+# The other parts' programs each use the files of the programs before.
 run(${CMAKE_COMMAND} -S ${SOURCE}/examples/programs -B ${SCRATCH}/programs -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Release
   -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix)
 run(${CMAKE_COMMAND} --build ${SCRATCH}/programs)

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# check.sh FOLDER: installs each package of FOLDER (a .deb, .whl, the Python package's source, a .tgz of npm) where nothing else of burnish is, runs
-# the demo there (a first fit where there is no command line), and prints what each takes. A package that is missing is
-# a fault. The .deb goes into a Debian made by debootstrap (BURNISH_ROOT=DIR keeps it
-# for the next time), the wheel into an empty virtual environment with no compiler in the path, where its tests pass
-# too, the .tgz into an empty folder. Each has to be below its limit. Needs root for the first.
+# check.sh FOLDER installs each package of FOLDER where nothing else of burnish is: a .deb, a .whl, the Python package's
+# source, a .tgz of npm. It runs the demo there, or a first fit where there is no command line, and prints what each
+# takes. A missing package is a fault. Each package must be below its limit.
+# The .deb goes into a Debian made by debootstrap, which needs root; BURNISH_ROOT=DIR keeps it for the next time. The
+# wheel goes into an empty virtual environment without a compiler in the path, where its tests must pass too. The .tgz
+# goes into an empty folder.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$(cd "$1" && pwd)
@@ -12,7 +13,7 @@ root=${BURNISH_ROOT:-$work/debian}
 leave() { umount "$root/proc" 2> /dev/null || true; rm -rf "$work"; }
 trap leave EXIT
 size() { echo "$(($(stat -c %s "$1") / 1024)) KiB  $(basename "$1")"; }
-# at_most FILE MIB
+# at_most FILE MIB fails where the file is larger.
 at_most() {
   [ "$(stat -c %s "$1")" -le "$(($2 << 20))" ] || { echo "$1: larger than $2 MiB" >&2; exit 1; }
 }
@@ -43,7 +44,7 @@ check_deb() {
   chroot "$root" bash -e /tmp/demo.sh burnish /tmp/demo | tail -3
   echo "demo in $(seconds "$start")"
   test -s "$root/tmp/demo/knot.png"
-  # what else a system looks for
+  # These are the other files that a system looks for.
   test -s "$root/usr/share/man/man1/burnish-fit.1.gz" || chroot "$root" dpkg -L burnish | grep -q man1/burnish-fit.1.gz
   bash -n "$root/usr/share/bash-completion/completions/burnish"
   test -s "$root/usr/share/zsh/vendor-completions/_burnish"
@@ -54,7 +55,8 @@ check_deb() {
   umount "$root/proc"
 }
 
-# What libburnish-dev suggests is enough for a program against the library, found by pkg-config and by CMake.
+# The packages that libburnish-dev suggests must be enough for a program against the library, found by pkg-config and by
+# CMake.
 check_library() {
   local development=("$folder"/libburnish-dev_*.deb)
   echo "== $(size "${development[0]}")"
@@ -76,10 +78,11 @@ check_library() {
   echo "a program is built against its library, by pkg-config and by CMake"
 }
 
-# version PYTHON: as 311; nothing where it does not run
+# version PYTHON prints the version, such as 311, or nothing where that Python does not run.
 version() { "$1" -c 'import sys; print("%d%d" % sys.version_info[:2])' 2> /dev/null || true; }
 
-# What a wheel is for, of the Pythons that are here (PYTHONS names more): its own, or with a stable ABI all newer ones.
+# Tests a wheel with the Pythons here that it is for (PYTHONS names more): its own one, or with a stable ABI all newer
+# ones.
 check_wheel() {
   echo "== $(size "$1")"
   at_most "$1" 12
@@ -98,7 +101,7 @@ check_wheel() {
   [ -n "$tried" ] || echo "NOT TRIED: no Python that this wheel is for is here; PYTHONS=... names one" >&2
 }
 
-# check_wheel_with WHEEL PYTHON
+# check_wheel_with WHEEL PYTHON tests a wheel with one Python.
 check_wheel_with() {
   local start
   start=$(date +%s)
@@ -110,13 +113,13 @@ check_wheel_with() {
   local taken=$(seconds "$start")
   echo "$("$2" --version): from pip install to the first fit: $taken"
   [ "${taken% s}" -le 30 ] || { echo "more than 30 s" >&2; exit 1; }
-  # its own tests; those of Mitsuba, MaterialX and USD skip where these are not
+  # The package's own tests skip those of Mitsuba, MaterialX and USD where these are missing.
   (cd "$work/empty" && export PATH="$work/venv/bin" BURNISH_CLI="$here/build/release/apps/burnish/burnish" &&
     pip --disable-pip-version-check -q install --only-binary :all: pytest && ! command -v c++ &&
     python -m pytest -q -p no:cacheprovider --rootdir "$here" "$here/python/tests")
 }
 
-# The source, built by pip alone, as on a machine that has what `make deps` installs.
+# pip alone builds the source, as on a machine with the packages of `make deps`.
 check_sdist() {
   echo "== $(size "$1")"
   at_most "$1" 3

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# versions.sh [FOLDER]: one version in all that states one, and, of FOLDER, in the name of every artefact.
+# versions.sh [FOLDER] checks that all files that state a version state the same one, and so do the names of FOLDER's
+# artefacts.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/../.." && pwd)
 version=$(sed -n 's/^project(burnish VERSION \([0-9.]*\).*/\1/p' "$here/CMakeLists.txt")

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Brings what the benchmarks of the power are measured against into build/rivals: the headers of Highway 1.4.0 and, on
-# Debian, SLEEF 3.9.0. tests/rivals/fetch.sh; HIGHWAY_GIT in the environment names another copy of Highway's repository.
-# What cannot be had is named and left out; the benchmarks then run without it.
+# Brings the libraries that benchmarks of the power compare with into build/rivals: the headers of Highway 1.4.0 and, on
+# Debian, SLEEF 3.9.0. Run it as tests/rivals/fetch.sh. HIGHWAY_GIT in the environment names another copy of Highway's
+# repository. A library that cannot be had is named and left out; the benchmarks then run without it.
 set -eu
 cd "$(dirname "$0")/../.."
 highway=1.4.0 commit=2607d3b5b0113992fe84d3848859eae13b3b52c1
@@ -15,14 +15,14 @@ fetch_highway() {
   git -c advice.detachedHead=false clone -q --depth 1 --branch $highway \
     "${HIGHWAY_GIT:-https://github.com/google/highway}" highway.git || return 1
   [ "$(git -C highway.git rev-parse HEAD)" = $commit ] || { echo "Highway $highway: expected commit $commit"; return 1; }
-  # under another name, so that no include finds the system's Highway, or finds this one for it
+  # Another folder name keeps includes of the system's Highway and of this one apart.
   mkdir -p highway
   cp -r highway.git/hwy highway/rival
   find highway/rival -type f -name '*.h' -exec sed -i 's|\(["<]\)hwy/|\1rival/|' {} +
   rm -rf highway.git
 }
 
-# From Debian's unstable suite, by a list of packages of our own: the system's sources stay as they are.
+# SLEEF comes from Debian's unstable suite, by a list of packages of our own. The system's sources stay as they are.
 fetch_sleef() {
   [ ! -e sleef/lib/libsleef.so ] || return 0
   command -v apt-get > /dev/null || return 1

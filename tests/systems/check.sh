@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# check.sh SUITE [--only COMMAND]...: a bare Debian (bookworm, trixie) made by debootstrap, and in it what the README says:
-# make and git installed, then `make demo` and `make test` in a clean checkout of HEAD. Prints for each how it ended, its
-# seconds, the megabytes of packages and of the build that it added, and what it skipped. COMMAND: demo, test, or units,
-# the unit tests of the optimized build alone. A command that fails and a warning of the compiler are faults.
-# CXX=g++-13 (or clang++-19, ...) installs and takes that compiler. BURNISH_SYSTEMS=DIR keeps the bare systems and the logs.
-# The network serves apt alone: pip and npm are told that there is none. Needs root.
+# check.sh SUITE [--only COMMAND]... makes a bare Debian (bookworm, trixie) by debootstrap and does in it what the
+# README says. It installs make and git, then runs `make demo` and `make test` in a clean checkout of HEAD. For each
+# command it prints how it ended, its seconds, the megabytes of packages and of the build that it added, and what it
+# skipped. COMMAND is demo, test, or units, the unit tests of the optimized build alone. A command that fails and a
+# warning of the compiler are faults.
+# CXX=g++-13 (or clang++-19, ...) installs and uses that compiler. BURNISH_SYSTEMS=DIR keeps the bare systems and the
+# logs. The network serves apt alone: pip and npm are told that there is none. Needs root.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/../.." && pwd)
 commands=() suite=
@@ -26,12 +27,12 @@ done
 [ ${#commands[@]} -gt 0 ] || commands=(demo test)
 [ "$(id -u)" = 0 ] || { echo "check.sh: debootstrap and chroot need root" >&2; exit 1; }
 
-work=$(mktemp -d /var/tmp/burnish-system.XXXXXX)  # gigabytes, which /tmp may not have
+work=$(mktemp -d /var/tmp/burnish-system.XXXXXX)  # holds gigabytes, which /tmp may not have
 kept=${BURNISH_SYSTEMS:-$work}
 root=$work/root
 leave() {
   umount "$root/dev/shm" "$root/dev/pts" "$root/proc" 2> /dev/null || true
-  if mountpoint -q "$root/proc"; then  # never delete what is mounted
+  if mountpoint -q "$root/proc"; then  # never delete a mounted folder
     echo "check.sh: $root/proc is in use, so $work is left there" >&2
   else
     rm -rf --one-file-system "$work"

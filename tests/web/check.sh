@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Opens exports in ktx-parse, three.js, Babylon.js, Chromium and the glTF validator, and compares tangent frames with
-# MikkTSpace, installed from npm into build/web; the page of a library; and the one in build/studio, where `make studio`
-# made it. With --skip-offline it
-# says so and succeeds where npm, Chromium or the registry cannot be reached.
+# Opens exports in ktx-parse, three.js, Babylon.js, Chromium and the glTF validator. Compares tangent frames with
+# MikkTSpace. Opens the page of a library, and the page in build/studio where `make studio` made it. The tools are
+# installed from npm into build/web. With --skip-offline it says so and succeeds where npm, Chromium or the registry
+# cannot be reached.
 set -eu
 cd "$(dirname "$0")/../.."
 skip() {
@@ -40,7 +40,7 @@ printf 'wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n' > "$web/normal.csv"
 NODE_FOLDER=node_modules node "$web/check.mjs" "$web/out" brushed "$(tail -1 "$web/value.csv" | cut -d, -f1)"
 node "$web/frames.mjs" build/release/tests/burnish_mesh_frames "$web"
 
-# a library's page
+# This makes a library's page.
 rm -rf "$web/library" && mkdir -p "$web/library"
 for alpha in 10 12 14 16 18 20 22 24 26 28 30 32 34 36 38 40; do
   echo "ggx:alpha_x=0.$alpha,alpha_y=0.$alpha,f0=0.9/0.$alpha/0.2"

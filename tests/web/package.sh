@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tests the package that `make studio` built, beside the command line: sizes, then tests/web/package.test.mjs.
+# Tests the package of `make studio` beside the command line: sizes, then tests/web/package.test.mjs.
 set -eu
 cd "$(dirname "$0")/../.."
 missing() {
