@@ -1,10 +1,11 @@
-// All materials of a library: page/materials.js calls catalogueMaterials with their figures, page/models-K.js
-// catalogueModels with the models of a part, which are loaded when a link of it is wanted. Only cards that are seen exist.
+// Shows all materials of a library. page/materials.js calls catalogueMaterials with their figures. page/models-K.js
+// calls catalogueModels with the models of a part, and is loaded when one of its links is wanted. Only cards in sight
+// exist.
 "use strict";
 (() => {
   const kWidth = 188, kHeight = 218, kSphere = 96, kAround = 2;  // pixels of a card with its gap; rows beyond the edges
   const kMaxCompared = 8, kThousands = new Intl.NumberFormat("en");
-  // What can be sorted and compared by: a heading, the text of a value, and which way is better.
+  // Figures to sort and compare by: a heading, the text of a value, and which way is better.
   const kFigures = {
     name: {label: "name", text: (v) => v, better: 0},
     psnr: {label: "psnr", text: (v) => `${v.toFixed(2)} dB`, better: 1},
@@ -35,9 +36,10 @@
     return made;
   }
 
-  // --- what is shown
+  // --- shown materials
 
-  // A word, or a figure compared with a number; throws nothing: what is no comparison is a word.
+  // Returns a test for a word, or for a figure compared with a number. Text that is no comparison is a word; nothing is
+  // thrown.
   function testOf(word) {
     const [, figure, sign, number] = word.match(/^(\w+)(<=|>=|<|>|=)(-?[\d.]+(?:e-?\d+)?)$/) ?? [];
     if (!figure || !kFigures[figure] || figure === "name" || Number.isNaN(Number(number)))
@@ -47,7 +49,7 @@
     return (material) => valueOf(material, figure) !== null && holds(valueOf(material, figure));
   }
 
-  // Those without a value stand last, whichever way.
+  // Materials without a value stand last in both orders.
   function select() {
     const tests = at("find").value.split(/\s+/).filter(Boolean).map(testOf);
     const figure = at("sort").value, sign = at("order").getAttribute("aria-pressed") === "true" ? -1 : 1;
@@ -66,7 +68,7 @@
 
   const columns = () => Math.max(1, Math.floor((at("materials").clientWidth + 12) / kWidth));
 
-  // Makes the cards that are seen and takes the others away.
+  // Makes the cards in sight and removes the other cards.
   function draw() {
     const list = at("materials"), across = columns(), top = -list.getBoundingClientRect().top;
     const first = Math.max(0, Math.floor(top / kHeight) - kAround) * across;
@@ -74,7 +76,7 @@
     list.style.height = `${Math.ceil(shown.length / across) * kHeight}px`;
     for (const [place, card] of cards) {
       if (place >= first && place < last) continue;
-      if (card.contains(document.activeElement)) continue;  // the keyboard is there
+      if (card.contains(document.activeElement)) continue;  // the keyboard's focus is there
       card.remove();
       cards.delete(place);
     }
@@ -88,7 +90,7 @@
     for (const [place, card] of cards)
       card.style.transform = `translate(${(place % across) * kWidth}px, ${Math.floor(place / across) * kHeight}px)`;
     list.append(made);
-    // Tab goes to a card that is there: where the one it went to was scrolled away, to the first that is seen
+    // Tab goes to an existing card. Where its card was scrolled away, it goes to the first card in sight.
     if (cards.size === 0 || cards.has(focused)) return;
     const seen = Math.max(0, Math.ceil(top / kHeight)) * across;
     focused = cards.has(seen) ? seen : first;
@@ -220,7 +222,7 @@
     event.preventDefault();
   }
 
-  // A link whose model is not there yet opens when it is.
+  // A link whose model is not loaded yet opens once it is.
   async function onClick(event) {
     const compare = event.target.closest("button[data-compare]");
     if (compare) return pick(shown[compare.dataset.compare]);
@@ -248,7 +250,7 @@
   window.catalogueMaterials = (given) => {
     library = given;
     library.materials.forEach((material, index) => Object.assign(material, {index, words: `${material.name} ${material.path} ${material.format} ${material.warnings.join(" ")}`.toLowerCase()}));
-    // places by name, found once: comparing texts takes longer than comparing numbers
+    // Places by name are found once, since comparing texts takes longer than comparing numbers.
     const collator = new Intl.Collator("en", {numeric: true});
     [...library.materials].sort((a, b) => collator.compare(a.name, b.name)).forEach((material, k) => (material.order = k));
     for (const [name, {label}] of Object.entries(kFigures)) at("sort").append(new Option(label, name));

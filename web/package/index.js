@@ -1,4 +1,4 @@
-// burnish: measured BRDFs in the browser and in Node. README.md says how it is used, index.d.ts what there is.
+// burnish: measured BRDFs in the browser and in Node. README.md shows its use, index.d.ts declares it.
 
 const inNode = typeof process === "object" && Boolean(process.versions?.node);
 
@@ -8,7 +8,7 @@ async function read(name) {
   return response;
 }
 
-// What `make` gives: once, and again where it failed.
+// Returns make()'s result: made once, and again after a failure.
 function once(make) {
   let made;
   return () => {
@@ -18,11 +18,11 @@ function once(make) {
   };
 }
 
-// The library's code, once for all workers, for `threads` beside each worker's own.
+// Returns the library's code, once for all workers, with `threads` beside each worker's own.
 function codeFor(threads) {
   const name = threads > 0 ? "burnish-threads" : "burnish";
-  // In browsers: what a worker runs, and what its threads run, with the library's glue inside, so that none of them
-  // asks for a file later. `replaced`: a pattern that has to be there, and what takes its place.
+  // In browsers, scripts of workers and threads have the library's glue inside, so none asks for a file later.
+  // `replaced` is a pattern that must be there; `by` takes its place.
   const glue = once(async () => (await read(`${name}.js`)).text());
   const script = (...parts) => URL.createObjectURL(new Blob(parts, {type: "text/javascript"}));
   const withGlue = async (file, replaced, by) => {
@@ -31,7 +31,7 @@ function codeFor(threads) {
     return script(before.replace(/export default burnish_wasm;/, ""), text.replace(replaced, by));
   };
   const imported = /\(e\.data\.urlOrBlob\?import\(.*?\):import\(.*?\)\)/;
-  // of Emscripten from 3.1.58 on the glue is what threads run too
+  // From Emscripten 3.1.58 on, threads run the glue too.
   const threadCode = async () => (await glue()).includes("em-pthread")
     ? script(await glue())
     : withGlue(`${name}.worker.js`, imported, "Promise.resolve({default: burnish_wasm})");
@@ -49,12 +49,12 @@ function codeFor(threads) {
   };
 }
 
-// Threads where pages may share memory between workers; of many processors no more.
+// Threads run where pages may share memory between workers, on at most this many processors.
 const kMaxThreads = 8;
 const sharesMemory = !inNode && globalThis.crossOriginIsolated;
 let code = codeFor(sharesMemory ? Math.min(navigator.hardwareConcurrency ?? 1, kMaxThreads) - 1 : 0);
 
-// What `use` makes of the code; where threads cannot be had after all, of that without.
+// Returns use(code). Where threads cannot be had after all, it uses the code without them.
 async function withCode(use) {
   const tried = code;
   try {
@@ -92,8 +92,7 @@ function newWorker(receive, fail) {
 
 const aborted = (signal) => signal.reason ?? new DOMException("The operation was aborted.", "AbortError");
 
-// One worker and its queue of jobs. Materials are told to it when a job needs them; where the worker was stopped, to the
-// next one again.
+// One worker and its queue of jobs. A job sends the materials that it needs, again where the worker was stopped.
 class Engine {
   #worker;
   #known = new Set();
@@ -102,9 +101,9 @@ class Engine {
   #calls = 0;
   #stops = 0;
   #waiting;
-  memory = 0;  // of the library in the worker, bytes
+  memory = 0;  // bytes of the library in the worker
 
-  /// {request, bytes?, materials?, onProgress?, signal?} to {json, blobs, memory}
+  /// Turns {request, bytes?, materials?, onProgress?, signal?} into {json, blobs, memory}.
   run(job) {
     const {signal, onProgress} = job;
     if (onProgress !== undefined && typeof onProgress !== "function") return Promise.reject(new Error(`expected onProgress as a function, found ${kindOf(onProgress)}`));
@@ -125,7 +124,7 @@ class Engine {
     });
   }
 
-  /// Ends the worker, whatever it does; its memory is the system's again.
+  /// Ends the worker at once, and frees its memory.
   stop() {
     ++this.#stops;
     this.#worker?.terminate();
@@ -136,13 +135,13 @@ class Engine {
     this.#waiting = undefined;
   }
 
-  /// Forgets a material once what was asked of it is answered.
+  /// Forgets a material once its requests are answered.
   close(id) {
     if (!this.#running && !this.#known.has(id)) return;
     if (!this.#running && this.#known.size === 1) this.stop();
     else this.run({request: {verb: "close", id}}).catch(() => {});
   }
-  // Whether the worker has to be told: it ends with the last one.
+  // Returns true if the worker must be told. With the last material, it ends instead.
   #forgets(id) {
     return this.#known.delete(id) && (this.#known.size > 0 || this.#jobs.length > 0);
   }
@@ -180,7 +179,7 @@ class Engine {
       const stops = this.#stops;
       const worker = await newWorker((message) => this.#worker === worker && this.#receive(message),
                                      (error) => this.#worker === worker && this.#fail(error));
-      if (stops !== this.#stops) {  // while it was started
+      if (stops !== this.#stops) {  // stopped during its start
         worker.terminate();
         throw new Error("the worker was stopped");
       }
@@ -190,7 +189,7 @@ class Engine {
     const call = ++this.#calls;
     return new Promise((resolve, reject) => {
       this.#waiting = {call, resolve, reject, onProgress};
-      // moved there, not copied: whoever asks made them for this call
+      // The bytes are moved, not copied: they were made for this call.
       this.#worker.postMessage({call, request, bytes}, bytes ? [bytes] : []);
     });
   }
@@ -217,14 +216,14 @@ class Engine {
   }
 }
 
-// Questions are answered by one worker; each fit, which takes seconds and memory, has its own, which ends with it.
+// One worker answers questions. A fit takes seconds and memory, so it has a worker of its own.
 const answers = new Engine();
 
 let ids = 0;
 
 const floats = (buffer) => new Float32Array(buffer);
 
-// What a wrong argument is.
+// Describes a wrong argument.
 const kindOf = (value) => value === null || value === undefined ? String(value) : value.constructor?.name ?? typeof value;
 const isList = (value) => typeof value === "object" && Number.isInteger(value?.length) && (value.length === 0 || typeof value[0] === "number");
 function expectOptions(verb, ...all) {
@@ -243,7 +242,7 @@ export class Material {
   #recipe;
   #closed = false;
 
-  /// Made by open and fit.
+  /// open and fit make models.
   constructor(recipe, summary) {
     this.#recipe = recipe;
     this.id = recipe.id;
@@ -255,13 +254,13 @@ export class Material {
     this.entries = summary.entries ?? [];
   }
 
-  /// For methods of this file.
+  /// The recipe serves methods of this file.
   get recipe() {
     if (this.#closed) throw new Error(`${this.name}: expected an open material, found one that was closed`);
     return this.#recipe;
   }
 
-  // What the caller gave, `options` and `call`, and what comes with it.
+  // Sends the caller's `options` and `call` with the further arguments.
   async #ask(verb, options, call, {bytes, others = [], more} = {}) {
     expectOptions(verb, options, call);
     const {onProgress, signal} = call;
@@ -327,12 +326,12 @@ export class Material {
     const {name = `${this.name} fitted`, ...how} = options, {onProgress, signal} = call;
     if (typeof name !== "string") throw new Error(`fit: expected a name as a text, found ${kindOf(name)}`);
     const engine = new Engine(), request = {verb: "fit", id: this.id, name, options: how};
-    // the worker's memory, which never shrinks, goes back
+    // Ending the worker frees its memory, which never shrinks.
     const {json, blobs} = await engine.run({request, materials: [this.recipe], onProgress, signal}).finally(() => engine.stop());
     return open(new Blob([blobs[0]]), {name, report: json, signal});
   }
 
-  /// One file as bytes, or a list of files where there are several.
+  /// Returns one file's bytes, or a list of files where there are several.
   async export(kind, options = {}, call = {}) {
     expectOptions("export", options, call);
     const {onLosses} = call;
@@ -352,7 +351,7 @@ export class Material {
 
 const kConverted = new Set(["merl", "utia", "rgl", "mbsdf", "zemax", "tensortree", "openmaterial", "astm", "csv", "exr", "model", "burnish"]);
 
-// What WebGL2 takes texels of a format as: [internal format, format, type], by channels.
+// WebGL2's [internal format, format, type] for texels of a format, by channels.
 const kTexels = {
   half: {1: ["R16F", "RED", "FLOAT"], 3: ["RGB16F", "RGB", "FLOAT"]},
   float: {1: ["R32F", "RED", "FLOAT"], 3: ["RGB32F", "RGB", "FLOAT"]},
@@ -394,7 +393,7 @@ export class Model extends Material {
   }
 }
 
-// Maps with the texels of their levels, the largest first.
+// Returns maps with the texels of their levels, the largest first.
 function mapsOf(maps, blobs) {
   let next = 0;
   return maps.map(({levels, ...map}) => {
@@ -404,7 +403,7 @@ function mapsOf(maps, blobs) {
   });
 }
 
-/// What of it is asked as of a model is answered of its mean; info, shader and export are those of the surface.
+/// Questions about a model are answered for the mean. info, shader and export are those of the surface.
 export class Surface extends Model {
   constructor(recipe, summary) {
     super(recipe, summary);
@@ -422,7 +421,7 @@ export class Surface extends Model {
   }
 }
 
-/// Opens a file's bytes, whatever its format, or an analytic BRDF such as "ggx:alpha_x=0.2,alpha_y=0.2".
+/// Opens a file's bytes in any format, or an analytic BRDF such as "ggx:alpha_x=0.2,alpha_y=0.2".
 export async function open(data, how = {}) {
   expectOptions("open", how);
   const {name, report, decoder, onProgress, signal, ...options} = how;
@@ -433,7 +432,7 @@ export async function open(data, how = {}) {
   } else {
     expectBytes(data, "bytes, a Blob or the text of an analytic BRDF");
     if (decoder) expectBytes(decoder, "a decoder as bytes or a Blob");
-    // a Blob need not be in memory
+    // A Blob need not be in memory.
     const blob = data instanceof Blob ? data : new Blob([data]);
     request.name = name ?? data.name ?? "file";
     if (decoder) request.decoderAt = blob.size;

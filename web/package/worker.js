@@ -1,4 +1,4 @@
-// The library in a worker, a Web Worker or one of Node's: a request in, its progress and its reply out, one at a time.
+// The library in a Web Worker or one of Node's: takes a request, sends progress and a reply, one at a time.
 import createLibrary from "./burnish.js";
 
 const inNode = typeof process === "object" && Boolean(process.versions?.node);
@@ -7,7 +7,7 @@ if (inNode) globalThis.self ??= {location: {href: import.meta.url}};
 
 let library, memory, current;
 
-// `threads`: beside this one, of memory that they share; `threadCode`: what each of them runs.
+// `threads` are beside this one and share its memory. `threadCode` is their script.
 async function start({module, threads = 0, threadCode}) {
   if (threads > 0) memory = new WebAssembly.Memory({initial: 512, maximum: 32768, shared: true});
   library = await createLibrary({
@@ -26,7 +26,7 @@ async function start({module, threads = 0, threadCode}) {
   if (threads > 0) library._burnish_start_threads(threads);
 }
 
-// As large as it is now: another thread may have made it larger.
+// The heap is read anew, since another thread may have enlarged it.
 const heap = () => memory ? new Uint8Array(memory.buffer) : library.HEAPU8;
 
 function withText(text, use) {
@@ -50,7 +50,7 @@ function answer({request, bytes}) {
     const place = library._burnish_buffer(bytes.byteLength);
     if (!place) throw new Error("expected enough memory, found none left");
     heap().set(new Uint8Array(bytes), place);
-    bytes.transfer?.(0);  // the library has them: where browsers can, theirs is free while it works
+    bytes.transfer?.(0);  // the library has them: browsers that can, free theirs while it works
   }
   const done = withText(JSON.stringify(request), (text) => library._burnish_call(text));
   const text = textAt(library._burnish_text());
@@ -79,14 +79,14 @@ const receive = async (message) => {
     const reply = answer(message);
     port.postMessage({call: message.call, reply}, reply.blobs);
   } catch (error) {
-    // what is no error of the library leaves it in an unknown state
+    // Another error than the library's leaves it in an unknown state.
     const fatal = !(error instanceof Error) || error instanceof WebAssembly.RuntimeError || error instanceof RangeError;
     const text = error?.message ?? String(error);
     port.postMessage({call: message.call, error: fatal ? `the library stopped: ${text}` : text, fatal});
   }
 };
 
-// in their order, the first being the module
+// Messages run in their order; the first is the module.
 let last = Promise.resolve();
 const queue = (message) => {
   last = last.then(() => receive(message));

@@ -1,12 +1,13 @@
-// Analytic BRDFs with sliders, and a sample as a goniometer would have measured it.
+// Analytic BRDFs with sliders, and a sample that resembles a goniometer's measurement.
 import {find, lineOf, make, say} from "./dom.js";
 import {open} from "./library.js";
 import {openOne, renewer} from "./materials.js";
 import {changed, state} from "./state.js";
 
-const kCells = 40;  // of the sample, along theta_h and theta_d
+const kCells = 40;  // cells of the sample, along theta_h and theta_d
 
-// Parameters: [name, kind, value, least, most]; a "log" slider has even factors. Ranges are those of docs/guide/analytic.md.
+// Parameters are [name, kind, value, least, most]. A "log" slider has even factors. Ranges are those of
+// docs/guide/analytic.md.
 const alpha = (name, value = 0.2) => [name, "log", value, 0.005, 1];
 const color = (name, value) => [name, "color", value];
 const exponent = (name, value) => [name, "log", value, 1, 10000];
@@ -47,11 +48,11 @@ const digits = (x) => String(Number(x.toPrecision(4)));
 const spec = (name, values) =>
   `${name}:${models[name].map(([p], k) => `${p}=${[values[k]].flat().map(digits).join("/")}`).join(",")}`;
 
-// Linear colours as those of a colour field, and back.
+// These convert linear colours to those of a colour field, and back.
 const hexOf = (rgb) => `#${rgb.map((x) => Math.round(255 * x ** (1 / 2.2)).toString(16).padStart(2, "0")).join("")}`;
 const rgbOf = (hex) => [1, 3, 5].map((at) => (parseInt(hex.slice(at, at + 2), 16) / 255) ** 2.2);
 
-// A slider for a parameter; told(value) at each change.
+// Returns a slider for a parameter; told(value) is called at each change.
 function field([name, kind, value, least, most], told) {
   const label = make("span", {}, name.replaceAll("_", " "));
   if (kind === "color") {
@@ -68,7 +69,7 @@ function field([name, kind, value, least, most], told) {
   return make("label", {}, label, input, output);
 }
 
-// An entry that its sliders change in place: its material is another one each time.
+// Adds an entry that its sliders change in place. Each change gives it another material.
 async function openModel(name) {
   let values = models[name].map(([, , value]) => value), asked, last = values;
   const entry = await openOne(spec(name, values), name, {spec: name});
@@ -88,7 +89,7 @@ async function openModel(name) {
   drawFields(values);
 }
 
-// Small numbers of a seed, even in [0, 1).
+// Returns random numbers of a seed, uniform in [0, 1).
 function random(seed) {
   return () => {
     seed = (seed + 0x6d2b79f5) | 0;
@@ -98,7 +99,7 @@ function random(seed) {
   };
 }
 
-// Red paint under varnish, a coloured base and a sharp coat, with 2 % of noise: the bytes of a MERL file.
+// Returns the bytes of a MERL file: red paint under varnish, a coloured base and a sharp coat, with 2 % of noise.
 async function samplePaint() {
   const part = async (text) => {
     const material = await open(text), {data} = await material.volume({thetaH: kCells, thetaD: kCells, phiD: 4 * kCells});
@@ -107,7 +108,7 @@ async function samplePaint() {
   };
   const base = await part("ggx:alpha_x=0.4,alpha_y=0.4,f0=0.3/0.03/0.02,kd=0.3/0.02/0.015");
   const coat = await part("ggx:alpha_x=0.12,alpha_y=0.12,f0=0.05");
-  // three planes of doubles, phi_d in half a circle fastest, then theta_d, theta_h
+  // The file has three planes of doubles: phi_d over half a circle is fastest, then theta_d, then theta_h.
   const cells = kCells * kCells * 2 * kCells, bytes = new DataView(new ArrayBuffer(12 + 24 * cells)), u = random(7);
   [kCells, kCells, 2 * kCells].forEach((size, k) => bytes.setInt32(4 * k, size, true));
   for (let at = 0; at < cells; ++at) {

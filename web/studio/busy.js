@@ -1,9 +1,9 @@
-// What takes long: a bar in the corner of a panel, and a button that stops it.
+// Shows long tasks by a bar in the corner of a panel, with a button that stops them.
 import {lineOf, make, say} from "./dom.js";
 
-const kLong = 150;  // milliseconds after which it is shown
+const kLong = 150;  // milliseconds before the bar is shown
 
-// What task(signal) gives, which the button aborts.
+// Returns the result of task(signal). The button aborts the signal.
 export async function stoppable(place, what, task) {
   const stop = new AbortController();
   const bar = make("div", {class: "busy"}, make("progress", {"aria-label": what}),
@@ -19,7 +19,7 @@ export async function stoppable(place, what, task) {
 
 export const isStopped = (error) => error?.name === "AbortError";
 
-// Says what was thrown, in one line.
+// Shows a thrown error in one line.
 export function sayError(error) {
   if (isStopped(error)) say("Stopped");
   else say(lineOf(error), "error");

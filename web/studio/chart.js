@@ -1,4 +1,4 @@
-// Line charts as SVG, with every colour an attribute of its own, so that a saved chart looks the same anywhere.
+// Line charts as SVG. Every colour is an attribute, so a saved chart looks the same anywhere.
 import {css, number, svg, tickText} from "./dom.js";
 
 const kWidth = 380, kHeight = 212, kLeft = 46, kRight = 12, kTop = 8, kBottom = 34;
@@ -10,8 +10,8 @@ function niceTicks([low, high]) {
 const decades = ([low, high]) =>
   Array.from({length: Math.round(Math.log10(high / low)) + 1}, (_, k) => 10 ** (Math.round(Math.log10(low)) + k));
 
-// {label, x: [low, high], y: [low, high], log (of y), logX, xTicks, xTick(value), xName, yName,
-//  lines: [{x, values, color, dashed, dots}], marks: places on x}
+// Draws {label, x: [low, high], y: [low, high], log (of y), logX, xTicks, xTick(value), xName, yName,
+// lines: [{x, values, color, dashed, dots}], marks: places on x}.
 export function plot(given) {
   const right = kWidth - kRight, bottom = kHeight - kBottom, toX = axis(given.x, kLeft, right, given.logX), toY = axis(given.y, bottom, kTop, given.log);
   const soft = css("--soft"), grid = css("--grid"), ink = css("--accent");
@@ -35,7 +35,7 @@ export function plot(given) {
   return figure;
 }
 const isKnown = (point) => point.every(Number.isFinite);
-// A line through points, with gaps where a number of one is not known; what stands alone between gaps is a dot.
+// Draws a line through points, with gaps at unknown numbers. A point alone between gaps is a dot.
 export function linePath(points, {color, dashed}) {
   const pieces = [[]];
   for (const point of points) {
@@ -46,10 +46,10 @@ export function linePath(points, {color, dashed}) {
   return svg("path", {d, fill: "none", stroke: color, "stroke-width": 1.8, "stroke-dasharray": dashed ? "5 4" : null, "stroke-linejoin": "round",
                       "stroke-linecap": dashed ? null : "round"});
 }
-// The place on x, in [0, 1] of the axis, that lies at this share of a chart's width.
+// Returns the place on x, in [0, 1] of the axis, at this share of a chart's width.
 export const shareOfAxis = (share) => (share * kWidth - kLeft) / (kWidth - kLeft - kRight);
 
-// Values outside stand at the edge.
+// Maps values to pixels. Values outside the range stand at the edge.
 function axis([low, high], from, to, log) {
   const at = log ? (v) => Math.log(Math.max(v, low) / low) / Math.log(high / low) : (v) => (v - low) / (high - low);
   return (v) => from + (to - from) * Math.min(Math.max(at(v), 0), 1);

@@ -1,4 +1,4 @@
-// Elements from data. Text only ever becomes text: nothing here parses markup.
+// Makes elements from data. Text only ever becomes text: nothing here parses markup.
 
 export const find = (selector) => document.querySelector(selector);
 
@@ -12,7 +12,7 @@ function fill(node, attributes, children) {
   return node;
 }
 
-// make("button", {class: "quiet", onclick: f}, "Text", node, ...)
+// Example: make("button", {class: "quiet", onclick: f}, "Text", node, ...)
 export const make = (tag, attributes = {}, ...children) => fill(document.createElement(tag), attributes, children);
 export const svg = (tag, attributes = {}, ...children) =>
   fill(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
@@ -23,7 +23,7 @@ export const table = (caption, heads, rows) => make("table", {}, caption ? make(
 
 export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-// 2700 -> "2.6 KB"; figures with a few digits.
+// Formats bytes, 2700 as "2.6 KB"; figures have few digits.
 export function bytesText(bytes) {
   if (bytes < 1024) return `${bytes} B`;
   return bytes < 1024 * 1024 ? `${(bytes / 1024).toFixed(1)} KB` : `${(bytes / 1048576).toFixed(1)} MB`;
@@ -37,7 +37,7 @@ export function number(x, digits = 4) {
   return text.replace("-", "−");
 }
 
-// Short enough for a tick: 2e8 -> "2·10⁸", 0.01 -> "0.01".
+// Formats a number briefly for a tick: 2e8 as "2·10⁸", 0.01 as "0.01".
 export function tickText(x, digits) {
   const [mantissa, exponent] = x.toExponential(digits - 1).split("e").map(Number);
   if (x === 0 || (exponent >= -2 && exponent <= 3)) return number(x, digits);
@@ -45,11 +45,11 @@ export function tickText(x, digits) {
   return mantissa === 1 ? power : `${String(mantissa).replace("-", "−")}·${power}`;
 }
 
-// What an element is, for one that takes its place: what it does, and of which entry.
+// Identifies an element by its function and its entry, so that its replacement is found.
 const roleOf = (element) => [element.tagName, element.dataset.export ?? element.dataset.edit ?? element.getAttribute("aria-label") ?? (element.className || element.textContent),
                              element.closest("[data-of]")?.dataset.of].join();
 
-// Other children; the one that stands for what had the focus has it again. Whether there is one, or none was needed.
+// Replaces children. The replacement of a focused element gets the focus. Returns false if the focus was lost.
 export function replaceKeepingFocus(place, ...children) {
   const held = place.contains(document.activeElement) ? roleOf(document.activeElement) : null;
   place.replaceChildren(...children);
@@ -59,7 +59,8 @@ export function replaceKeepingFocus(place, ...children) {
   return same !== undefined;
 }
 
-// told(dx, dy) in pixels while a pointer drags the element; by its places, since not every browser says how far a finger moved.
+// Calls told(dx, dy) in pixels while a pointer drags the element. It subtracts places, since not every browser reports
+// a finger's movement.
 export function onDrag(element, told) {
   let last = null;
   element.addEventListener("pointerdown", (event) => {
@@ -81,7 +82,7 @@ export function saveFile(name, data, type = "application/octet-stream") {
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
-// Runs the latest of many asked-for tasks, one at a time; what came between is forgotten.
+// Runs the latest of several requested tasks, one at a time. Requests between are dropped.
 export function latest(task) {
   let running = false, again = null;
   return async function ask(...args) {
@@ -103,7 +104,8 @@ export function latest(task) {
   };
 }
 
-// One line above the page, said aloud too; an error stays until the next or until it is closed.
+// Shows a line above the page, which screen readers read too. An error stays until the next message or until it is
+// closed.
 export function say(text, kind = "note") {
   const line = find("#message");
   line.dataset.kind = kind;
@@ -112,8 +114,8 @@ export function say(text, kind = "note") {
   clearTimeout(say.timer);
   if (kind === "note" && text) say.timer = setTimeout(() => (line.hidden = true), 5000);
 }
-// A thrown thing as one line.
-// What the library says of the command line, in the page's words.
+// The library's messages name the command line. These rules put them into the page's words. lineOf turns a thrown error
+// into one line.
 const kPageWords = [
   [/`burnish help formats` lists what is read/, "the list beside the files' box says what is read"],
   [/,? ?which `burnish (?:fit|convert)` makes of it/, ""],

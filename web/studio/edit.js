@@ -1,4 +1,4 @@
-// Changes to a model by sliders, each one undone and redone.
+// Changes a model by sliders. Each change can be undone and redone.
 import {isStopped, sayError, stoppable} from "./busy.js";
 import {find, latest, make, replaceKeepingFocus} from "./dom.js";
 import {infoOf} from "./library.js";
@@ -11,13 +11,13 @@ const fields = [
   ["roughness", "Roughness", -1, 1, 0, (x) => 2 ** x, (x) => `×${(2 ** x).toFixed(2)}`],
   ["diffuse", "Diffuse", 0, 0.5, 0, (x) => x, (x) => `+${x.toFixed(2)}`],
 ];
-const kBurst = 1000;  // milliseconds without a key that end a burst of them
-const ofLobes = ["scale", "hue"];  // what each lobe has too
+const kBurst = 1000;  // milliseconds without a key that end a burst of keys
+const ofLobes = ["scale", "hue"];  // sliders that each lobe has too
 
-// Places of sliders: "hue" of all lobes, "hue:1" of one; what was not moved has none.
+// Returns a slider's place: "hue" for all lobes, "hue:1" for one. A slider that was not moved has its default.
 const placeOf = (places, [name, , , , still], lobe) => places?.[lobe === "" ? name : `${name}:${lobe}`] ?? still;
 
-// What `edit` takes: a number for all lobes, a list where one has its own.
+// Returns the options of `edit`: a number for all lobes, a list where one lobe has its own.
 function optionsOf(places, lobes) {
   const options = {};
   for (const field of fields) {
@@ -29,10 +29,10 @@ function optionsOf(places, lobes) {
   return options;
 }
 
-// Whether a slider stands elsewhere than where it began.
+// Returns true if a slider is away from its start.
 const moved = ({places, lobes}) => Object.keys(optionsOf(places, lobes ?? 0)).length > 0;
 
-// States to go back and forth to: {entry, places}.
+// These are the states to undo and redo to: {entry, places}.
 let past = [], future = [], shownFor, lobe = "";
 
 const apply = latest(async (entry) => {
@@ -44,7 +44,7 @@ const apply = latest(async (entry) => {
       const made = same ? original : await original.edit(options, {signal});
       return {material: made, info: await (same ? made.info({signal}) : infoOf(made, {signal}))};
     });
-    // closed or another one meanwhile
+    // Meanwhile the entry may be closed or have another material.
     if (!state.entries.includes(entry) || entry.original !== original) {
       if (!same) material.close();
       return;
@@ -58,7 +58,7 @@ const apply = latest(async (entry) => {
   }
 });
 
-// Sliders go back to what is shown, and no step of undoing leads there.
+// Moves sliders back to the shown state. No step of undoing leads to the abandoned one.
 function takeBack(entry) {
   entry.places = entry.applied ?? {};
   for (const steps of [past, future])
@@ -95,7 +95,7 @@ function draw(force) {
   if (!force && shownFor === key) return;
   if (shownFor !== key) lobe = "";
   shownFor = key;
-  // one step back is one drag, or one burst of keys: where it began is remembered, not each place between
+  // One step back is one drag, or one burst of keys. Only its start is remembered.
   let before = null, keyed = false, burst = null, ending;
   const shown = fields.filter(([name]) => lobe === "" || ofLobes.includes(name));
   replaceKeepingFocus(find("#edit"), lobeChoice(lobes), ...shown.map((field) => {
@@ -125,7 +125,7 @@ function draw(force) {
   }), make("button", {type: "button", class: "quiet", id: "as-fitted", disabled: !able || !moved(entry), onclick: () => set(entry, {}, true)}, "As fitted"));
 }
 
-// All lobes or one of several.
+// Chooses all lobes or one of several.
 function lobeChoice(lobes) {
   const numbers = Array.from({length: lobes}, (_, k) => make("option", {value: k}, `lobe ${k + 1}`));
   const select = make("select", {"data-edit": "lobe", disabled: !(lobes > 1), onchange: () => {

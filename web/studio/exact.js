@@ -1,11 +1,12 @@
-// What is drawn through a table, computed by the library while the view rests, at the very directions of the shader.
+// Computes by the library, while the view rests, light that is drawn through a table. Directions are those of the
+// shader.
 import {toRgb} from "./vectors.js";
 
-export const kPasses = 16, kDirections = 2;  // of light from all around, a pixel and pass
-const kPatience = 120;                       // milliseconds that others wait for the worker
+export const kPasses = 16, kDirections = 2;  // of light from all around, in each pixel and pass
+const kPatience = 120;                       // milliseconds that other requests wait for the worker
 let pace = 100;                              // pairs a millisecond
 
-// The pairs of one part of the light: their directions, what f_r is multiplied by, and where their pixels start.
+// Gathers the pairs of one part of the light: their directions, the factors of f_r, and where their pixels start.
 function pairsOf(wi, wo, weights) {
   const lit = [];
   for (let k = 0; k < weights.length; k += 4)
@@ -20,7 +21,7 @@ function pairsOf(wi, wo, weights) {
   return {pixels: lit, wi: gathered(wi), wo: gathered(wo), weights: gathered(weights)};
 }
 
-// Adds weights times values; a pixel of which a direction is not known has no alpha.
+// Adds weights times values. A pixel with an unknown direction gets no alpha.
 function addLight(exact, pixels, weights, values) {
   pixels.forEach((to, i) => {
     if (Number.isNaN(values[3 * i])) exact[to + 3] = 0;
@@ -28,8 +29,8 @@ function addLight(exact, pixels, weights, values) {
   });
 }
 
-// The light of all pixels, rgb and 1 where it is known. read(part, which) draws 0 wi, 1 wo or 2 the weights of a part, four
-// floats a pixel. Nothing where current() says no meanwhile.
+// Returns the light of all pixels: rgb, and 1 where it is known. read(part, which) draws wi (0), wo (1) or the weights
+// (2) of a part, four floats a pixel. Returns null when current() becomes false.
 export async function exactLight(material, parts, read, current) {
   const wo = read(0, 1), exact = new Float32Array(wo.length);
   for (let k = 0; k < wo.length; k += 4) exact[k + 3] = wo[k + 2] > 0 ? 1 : 0;

@@ -1,14 +1,14 @@
-// OpenEXR pictures of one part, scan lines or tiles, as programs write light from all around: rgb floats, rows from the
-// top, of tiles the largest level. All compressions. Throws Error where the bytes say something else.
+// Reads OpenEXR pictures of one part, in scan lines or tiles, such as environment maps. Returns rgb floats, rows from
+// the top; of tiles, the largest level. Reads all compressions. Throws Error where the bytes are no such picture.
 // Source: OpenEXR 3, its technical introduction.
 import {expected, halfAt, kBytes, kMaxEach, kNames, kRows, kTypes, Reader, unpack} from "./exr_blocks.js";
 
 const kMagic = 20000630, kTiles = 0x200, kDeep = 0x800, kParts = 0x1000;
-const kMaxPixels = 1 << 26, kMaxValue = 60000;  // of what is drawn
+const kMaxPixels = 1 << 26, kMaxValue = 60000;  // limits of the drawn picture
 
 const isExr = (bytes) => bytes.length > 8 && new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true) === kMagic;
 
-// {attribute: Reader}; "tiles" only where there are some.
+// Returns {attribute: Reader}; "tiles" only where there are tiles.
 function readHeader(from) {
   if (from.u32() !== kMagic) throw expected("an OpenEXR file", "another");
   const flags = from.u32();
@@ -37,8 +37,8 @@ function readChannels(from) {
   return channels;
 }
 
-// Whether the bytes are a picture rather than a model of burnish, whose channels are tables, or slices of a measurement; what
-// only pictures are (tiles, deep pixels) counts as one.
+// Returns true if the bytes are a picture. A model of burnish has tables as channels, and slices of a measurement are
+// no picture either. Tiles and deep pixels exist in pictures alone, so they count as one.
 export function isPicture(bytes) {
   if (!isExr(bytes)) return false;
   const flags = new Reader(bytes, 4).u32();
@@ -51,7 +51,7 @@ export function isPicture(bytes) {
   }
 }
 
-// Of at most `most` pixels a side.
+// Reads a picture of at most `most` pixels a side.
 export async function readExr(bytes, most = 8192) {
   const from = new Reader(bytes), header = readHeader(from);
   for (const name of ["channels", "compression", "dataWindow"]) if (!header.has(name)) throw expected(`an attribute ${name}`, "none");
@@ -80,7 +80,7 @@ export async function readExr(bytes, most = 8192) {
   return {width, height, data};
 }
 
-// Column and row.
+// Returns column and row.
 function firstOfTile(from, across, down) {
   const [column, row, levelX, levelY] = [0, 1, 2, 3].map(() => from.i32());
   if (levelX !== 0 || levelY !== 0) throw expected("tiles of the largest level first", `level ${levelX}, ${levelY}`);

@@ -1,18 +1,19 @@
-// The blocks of OpenEXR pictures. Source: OpenEXR 3, its technical introduction, ImfPizCompressor, ImfHuf, ImfWav,
-// ImfPxr24Compressor, ImfB44Compressor; DWA is in exr_dwa.js.
+// Unpacks the blocks of OpenEXR pictures. DWA is in exr_dwa.js. Source: OpenEXR 3, its technical introduction,
+// ImfPizCompressor, ImfHuf, ImfWav, ImfPxr24Compressor, ImfB44Compressor.
 import {unpackDwa} from "./exr_dwa.js";
 
 export const kTypes = {half: 1, float: 2}, kBytes = [4, 2, 4];
 export const kNames = ["none", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"];
-export const kRows = [1, 1, 1, 16, 32, 16, 32, 32, 32, 256];  // of a block
-// bytes that one byte can stand for: a run of RLE, zlib's longest match [RFC 1951] (of PXR24 three quarters of a float), PIZ's
-// 256 words in 10 bits, B44's square in three bytes, DWA's square in a word of each of its parts, which zlib packs
+export const kRows = [1, 1, 1, 16, 32, 16, 32, 32, 32, 256];  // rows of a block
+// These are the most bytes that one packed byte can stand for: a run of RLE, or zlib's longest match [RFC 1951], for
+// PXR24 with three quarters of a float. PIZ has 256 words in 10 bits, B44 a square in three bytes. DWA has a square in
+// a word of each of its parts, which zlib packs.
 export const kMaxEach = [1, 64, 1032, 1032, 410, 1376, 11, 11, 32 * 1032, 32 * 1032];
 const kPlanes = [4, 2, 3];  // bytes of values in PXR24
-const kFlat = 13;           // a shift that says a square of one value
+const kFlat = 13;           // the least shift that marks a square of one value
 export const expected = (what, found) => new Error(`.exr: expected ${what}, found ${found}`);
 
-// Little-endian numbers and texts; past the end there are none.
+// Reads little-endian numbers and texts. Reading past the end throws Error.
 export class Reader {
   constructor(bytes, at = 0) {
     this.bytes = bytes;
@@ -37,7 +38,8 @@ export class Reader {
   }
 }
 
-// The bytes of a block's rows, channel after channel in each: `how` its {channels, width, count} of pixels and rows.
+// Returns the bytes of a block's rows, each with channel after channel. `how` has {channels, width, count} of pixels
+// and rows.
 export async function unpack(packed, compression, how) {
   const size = sizeOf(how, kBytes);
   if (packed.length === size) return packed.slice();
@@ -78,7 +80,7 @@ export function runs(packed, size) {
   }
   return bytes;
 }
-// Sums of differences, whose even places stand before the odd ones.
+// Undoes differences between neighbours. Even places stand before the odd ones.
 export function interleaved(bytes) {
   const result = new Uint8Array(bytes.length), odd = (bytes.length + 1) >> 1;
   for (let i = 1; i < bytes.length; ++i) bytes[i] += bytes[i - 1] - 128;
@@ -86,7 +88,7 @@ export function interleaved(bytes) {
   return result;
 }
 
-// PXR24: the upper bytes of a row's values, then the next ones; each value is the sum of those before it.
+// PXR24 stores a row's highest bytes, then the next ones. Each value is the sum of the steps before it.
 function planes(bytes, size, {channels, width, count}) {
   const result = new Uint8Array(size), to = new DataView(result.buffer);
   let from = 0, at = 0;
@@ -111,7 +113,7 @@ export function halfAt(bits) {
   return sign * (exponent ? (1 + fraction / 1024) * 2 ** (exponent - 15) : fraction * 2 ** -24);
 }
 
-// Channel after channel as row after row.
+// Reorders rows of each channel to channels of each row.
 function inRows(parts, size, {channels, width, count}) {
   const result = new Uint8Array(size);
   let at = 0;
@@ -124,7 +126,8 @@ function inRows(parts, size, {channels, width, count}) {
   return result;
 }
 
-// B44: a channel of halves in squares of 4 x 4, their places in order of size; others as they are.
+// B44 stores a channel of halves in squares of 4 x 4, as places in the order of size. Other channels are stored as they
+// are.
 function squares(from, {channels, width, count}) {
   return channels.map(({name, type, curved}) => {
     if (type !== kTypes.half) return from.take(kBytes[type] * width * count);
@@ -139,7 +142,8 @@ function squares(from, {channels, width, count}) {
     return result;
   });
 }
-// The first value in 16 bits, then six bits each: a shift; the steps down the first column; those to the right of each.
+// Reads the first value in 16 bits, then numbers of six bits: a shift, the steps down the first column, and the steps
+// to the right in each row.
 function squareOf(from) {
   const values = new Array(16), first = from.u16Big(), shift = from.u8() >> 2;
   if (shift >= kFlat) return values.fill(halfOfPlace(first));
@@ -158,7 +162,7 @@ function squareOf(from) {
 }
 const halfOfPlace = (place) => (place & 0x8000 ? place & 0x7fff : ~place & 65535);
 
-// PIZ: the values that occur, numbered; a wavelet of their numbers; Huffman's code of that.
+// PIZ numbers the values that occur, transforms the numbers by a wavelet, and packs them by Huffman's code.
 function unpackPiz(from, size, {channels, width, count}) {
   const least = from.u16(), most = from.u16(), bits = new Uint8Array(8192);
   if (most >= bits.length) throw expected("a list of values up to 8191", most);
@@ -180,7 +184,7 @@ function unpackPiz(from, size, {channels, width, count}) {
   return result;
 }
 
-// Lengths of codes of all symbols, six bits each, runs of zeros shorter.
+// Reads the lengths of all symbols' codes, six bits each. Runs of zeros are shorter.
 function codeLengths(next, first, last) {
   const lengths = new Uint8Array(65537);
   for (let i = first; i <= last;) {
@@ -212,7 +216,7 @@ export function huffman(from, size) {
     return value;
   };
   const lengths = codeLengths(next, first, last);
-  // the codes of a length follow each other, longer ones below
+  // Codes of one length are consecutive; longer codes have lower values.
   const counts = new Array(59).fill(0), starts = new Array(59).fill(0), symbols = Array.from({length: 59}, () => []);
   for (let s = first; s <= last; ++s) if (lengths[s]) (++counts[lengths[s]], symbols[lengths[s]].push(s));
   for (let length = 58, code = 0; length > 0; --length) [starts[length], code] = [code, Math.floor((code + counts[length]) / 2)];
@@ -237,7 +241,7 @@ export function huffman(from, size) {
   return words;
 }
 
-// Sums and differences back to the two values that they are of.
+// Turns sums and differences back into the two values.
 function pair14(words, i, j) {
   const high = (words[j] << 16) >> 16, a = ((words[i] << 16) >> 16) + (high & 1) + (high >> 1);
   words[i] = a;

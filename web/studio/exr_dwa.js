@@ -1,12 +1,13 @@
-// Blocks of OpenEXR pictures with DWAA and DWAB: squares of 8 x 8 cosines of R, G and B, runs of A, zlib's bytes of others.
+// Unpacks blocks of OpenEXR pictures with DWAA and DWAB. R, G and B are squares of 8 x 8 cosines, A has runs, and other
+// channels zlib's bytes.
 // Source: OpenEXR 3, ImfDwaCompressor, internal_dwa_helpers.
 import {expected, halfAt, huffman, inflate, interleaved, kBytes, kTypes, Reader, runs} from "./exr_blocks.js";
 
 const kSizes = ["version", "otherRaw", "otherPacked", "acPacked", "dcPacked", "runsPacked", "runsRaw", "runsSize", "acCount", "dcCount", "acPacking"];
-const kOther = 0, kCosines = 1, kRuns = 2;  // what a channel is packed as
+const kOther = 0, kCosines = 1, kRuns = 2;  // the packing of a channel
 const kSide = 8, kSquare = 64, kEnd = 0xff00;
 
-// Where the coefficients of a square stand, from the mean on along its diagonals.
+// The places of a square's coefficients, from the mean on along its diagonals.
 const kZigzag = (() => {
   const places = Array.from({length: kSquare}, (_, i) => ({x: i % kSide, y: Math.floor(i / kSide)}));
   const along = ({x, y}) => ((x + y) % 2 ? y : x);
@@ -18,7 +19,7 @@ const kCosine = Array.from({length: kSquare}, (_, i) => {
   return (u === 0 ? Math.SQRT1_2 : 1) / 2 * Math.cos(((2 * x + 1) * u * Math.PI) / 16);
 });
 
-// The half nearest to a number, ties to even.
+// Returns the half nearest to a number, ties to even.
 function toHalf(x) {
   const sign = x < 0 || Object.is(x, -0) ? 0x8000 : 0, size = Math.abs(x);
   if (Number.isNaN(x)) return 0x7e00;
@@ -37,7 +38,7 @@ function toLinear(x) {
   return Math.sign(x) * (size <= 1 ? size ** 2.2 : Math.exp(2.2 * (size - 1)));
 }
 
-// [{suffix, packing, place, type, anyCase}]: the first that matches a channel says how it is packed.
+// Reads [{suffix, packing, place, type, anyCase}]. The first rule that matches a channel gives its packing.
 function readRules(from) {
   const end = from.at + from.u16(), rules = [];
   while (from.at < end) {
@@ -48,7 +49,7 @@ function readRules(from) {
   return rules;
 }
 
-// Each channel with its packing and, of a colour's three, their places.
+// Returns each channel with its packing, and the places of each colour's three channels.
 function packings(rules, channels) {
   const colours = new Map();
   const packed = channels.map((channel) => {
@@ -62,7 +63,7 @@ function packings(rules, channels) {
   return {packed, colours: [...colours.values()].filter((three) => three.length === 3 && three.every(Boolean) && Object.keys(three).length === 3)};
 }
 
-// A square's coefficients back to values.
+// Transforms a square's coefficients back to values.
 function inverse(square, scratch) {
   for (let v = 0; v < kSide; ++v)
     for (let x = 0; x < kSide; ++x) {
@@ -78,7 +79,7 @@ function inverse(square, scratch) {
     }
 }
 
-// Coefficients after the mean: halves, runs of zeros and an end.
+// Reads the coefficients after the mean: halves, runs of zeros and an end.
 function readSquare(ac, square) {
   for (let k = 1; k < kSquare;) {
     if (ac.at >= ac.words.length) throw expected("a square's coefficients", "none");
@@ -89,7 +90,7 @@ function readSquare(ac, square) {
   }
 }
 
-// One channel, or three that are luma and two differences, into their rows.
+// Reads one channel, or three that are luma and two differences, into their rows.
 function readCosines(together, {width, count}, ac, dc) {
   const across = Math.ceil(width / kSide), down = Math.ceil(count / kSide), first = dc.at, scratch = new Float32Array(kSquare);
   if (first + together.length * across * down > dc.words.length) throw expected("the means of squares", "fewer");
@@ -119,7 +120,7 @@ function put({type, curved, view}, place, value) {
 
 const wordsOf = (bytes) => Uint16Array.from({length: bytes.length / 2}, (_, i) => bytes[2 * i] | (bytes[2 * i + 1] << 8));
 
-// The parts of a block, whose sizes its head says: nothing of a part without bytes.
+// Reads the parts of a block, whose sizes stand in its head. A part without bytes gives nothing.
 async function readParts(from, how) {
   const sizes = Object.fromEntries(kSizes.map((name) => [name, from.u64()])), cells = how.channels.length * how.width * how.count;
   if (sizes.version !== 2) throw expected("version 2 of DWA's blocks", sizes.version);
@@ -138,7 +139,7 @@ async function readParts(from, how) {
   };
 }
 
-// Channel after channel, each row after row.
+// Returns channel after channel, each row after row.
 export async function unpackDwa(from, how) {
   const {width, count} = how, parts = await readParts(from, how), {packed, colours} = packings(parts.rules, how.channels);
   for (const channel of packed) {
@@ -152,7 +153,7 @@ export async function unpackDwa(from, how) {
     if (channel.packing === kCosines) readCosines([channel], how, parts.ac, parts.dc);
     if (channel.packing === kOther) channel.bytes.set(parts.other.take(channel.bytes.length));
     if (channel.packing !== kRuns) continue;
-    // the bytes of all values' lowest places, then those of the next ones
+    // The lowest bytes of all values stand first, then the next ones.
     const size = kBytes[channel.type], planes = Array.from({length: size}, () => parts.runs.take(width * count));
     planes.forEach((plane, k) => plane.forEach((byte, i) => (channel.bytes[size * i + k] = byte)));
   }

@@ -1,5 +1,5 @@
-// How far what is drawn is from what was measured: decibels between both on spheres under three lights, their brightest
-// 3 % white. The values are those of the GPU and of the worker at the same pairs of directions.
+// Measures the difference between the drawn values and the measured ones: the psnr in decibels on spheres under three
+// lights, with their brightest 3 % white. The GPU and the worker evaluate the same pairs of directions.
 import {bind, program, target, texture} from "./gl.js";
 import {pairsFragment, screenVertex} from "./shading.js";
 import {cross, dot, normalize, toRgb} from "./vectors.js";
@@ -7,7 +7,7 @@ import {cross, dot, normalize, toRgb} from "./vectors.js";
 const kSide = 32;
 const kLights = [[-0.5, 0.55, 0.7], [0.9, 0.1, -0.2], [0.1, 0.1, 1]].map(normalize);
 
-// wi, wo and the cosine to the light of each pixel that is lit, from the front.
+// Returns wi, wo and the cosine to the light of each lit pixel, seen from the front.
 function lit(light) {
   const pairs = [], eye = [0, 0, 1];
   for (let k = 0; k < kSide * kSide; ++k) {
@@ -20,7 +20,7 @@ function lit(light) {
   return pairs;
 }
 
-// rgb of each pair, as it is drawn.
+// Returns rgb of each pair as the GPU draws it.
 export function drawnValues(gl, form, pairs) {
   const made = program(gl, screenVertex, pairsFragment(form.glsl)), count = pairs.length, goal = target(gl, count, 1, false);
   const data = new Float32Array(8 * count);
@@ -52,7 +52,7 @@ const display = (x) => {
   return y <= 0.0031308 ? 12.92 * y : 1.055 * y ** (1 / 2.4) - 0.055;
 };
 
-// Nothing where current() says no meanwhile: the form is gone then.
+// Returns undefined when current() becomes false, since the form is gone then.
 export async function fidelity(gl, form, material, current) {
   let squares = 0, count = 0;
   for (const pairs of kLights.map(lit)) {

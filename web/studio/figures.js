@@ -1,5 +1,5 @@
-// Figures of what stands beside something else, as `compare` finds them, by the materials: what is edited or read another
-// way has its own, and what is undone has the old ones.
+// Keeps the figures of `compare` by the two materials. An edited material, or one read in another way, has figures of
+// its own. After an undo the old ones serve again.
 import {isStopped, stoppable} from "./busy.js";
 import {find, latest, lineOf} from "./dom.js";
 import {changed, isSurface, onChange, state} from "./state.js";
@@ -8,7 +8,7 @@ const kRest = 300;  // milliseconds that a pair rests before it is measured
 const known = new WeakMap();
 let resting;
 
-// {figures} or, where there are none, {wrong}; nothing where it was not measured yet.
+// Returns {figures}, or {wrong} where there are none, or undefined where the pair was not measured yet.
 export const judgedOf = (reference, entry) => known.get(reference.material)?.get(entry.material);
 export function remember(reference, material, judged) {
   if (!known.has(reference)) known.set(reference, new WeakMap());

@@ -1,4 +1,4 @@
-// Fits with progress and stop, their figures beside the reference's, and error against bytes.
+// Runs fits with progress and stop, and shows their figures beside the reference's, and error against bytes.
 import {plot} from "./chart.js";
 import {bytesText, css, find, lineOf, make, number, row, say, table} from "./dom.js";
 import {judgedOf, remember} from "./figures.js";
@@ -14,14 +14,15 @@ const presets = {
 };
 const kCurve = [700, 1400, 2800, 5600, 11200, 22400, 44800];
 const kMaxFits = 4;  // at once, each with memory of its own
-// What the bytes and fetches are, and what it costs to leave fetches open.
+// The hint explains bytes and fetches, and the cost of leaving fetches open.
 const kHint = "2700, 16K, 1M or auto. Fetches: filtered reads a light";
 const kOpen = "; left empty, as many as the bytes are worth, which may be 20 and more.";
-const kNothing = 1e-9;  // figures below it are roundings
+const kNothing = 1e-9;  // smaller figures are roundings
 
 let stop = null, fitted = null, choose = () => {}, showResults = () => {}, followed = null;
 
-// What is typed, for the library to read or to refuse. Fetches are left to it where nothing or "auto" is typed.
+// Returns the typed text, which the library reads or refuses. Without fetches, or with "auto", the library chooses
+// them.
 const typedBudget = () => find("#budget").value.trim().toLowerCase();
 function typedFetches() {
   const text = find("#fetches").value.trim();
@@ -29,10 +30,10 @@ function typedFetches() {
   return Number.isFinite(Number(text)) ? Number(text) : text;
 }
 
-// Whether the preset is the default, whose fetches depend on the material.
+// Returns true for the default preset, whose fetches depend on the material.
 const isDefault = () => find("#presets [data-value=default]").getAttribute("aria-checked") === "true";
 
-// What a fit follows: as chosen where there is a choice.
+// Returns the target of a fit where there is a choice.
 const targetOf = (reference) => reference.material.measurement ? find("#target").value : undefined;
 
 function progress(fraction, stage) {
@@ -40,8 +41,8 @@ function progress(fraction, stage) {
   if (Number.isFinite(fraction)) find("#fit-bar").value = fraction;
 }
 
-// Runs the task with a signal that the button of stopping aborts, as the task itself may and the end of what is fitted does; what
-// it throws is said, unless it was stopped.
+// Runs the task with a signal. The stop button, the task itself, and the end of the fitted entry abort it. Shows
+// errors, except that of an abort.
 async function busy(reference, task) {
   const mine = (stop = new AbortController());
   fitted = reference;
@@ -85,7 +86,7 @@ async function fit(event) {
   const reference = referenceOf(state.shown);
   if (!reference || isSurface(reference) || stop) return;
   await busy(reference, async (signal) => {
-    // what the fields show holds, of the default too
+    // The fields hold the options, also those of the default.
     const options = {target: targetOf(reference), budget: typedBudget(), fetches: typedFetches()};
     const {entry} = await fitOne(reference, options, signal);
     if (!state.entries.includes(reference)) {
@@ -99,8 +100,8 @@ async function fit(event) {
   });
 }
 
-// One fit a size, as many at once as there are processors to spare; what is done so far is kept where it is stopped. One
-// that fails ends all.
+// Fits each size once, as many at a time as there are processors to spare. A stop keeps the fits that are done. A
+// failed fit ends all.
 async function errorCurve() {
   const reference = referenceOf(state.shown);
   if (!reference || stop) return;
@@ -122,7 +123,7 @@ async function errorCurve() {
         drawCurve();
       }
     };
-    // one that has threads takes all processors by itself
+    // A fit with threads takes all processors by itself.
     const workers = globalThis.crossOriginIsolated ? 1 : Math.min(Math.max((navigator.hardwareConcurrency ?? 2) - 1, 1), kMaxFits);
     await Promise.all(Array.from({length: workers}, () => one().catch(failed)));
     if (wrong) throw wrong;
@@ -139,10 +140,10 @@ function drawCurve() {
   }));
 }
 
-// A figure with few digits; with all of them where it is pointed at.
+// Shows a figure with few digits, and with all of them as its title.
 const figure = (x, digits) => make("span", {title: x}, number(Math.abs(x) < kNothing ? 0 : x, digits));
 
-// What each figure says, where it is pointed at and below the table.
+// The explanations of the figures, shown as titles and below the table.
 const kExplained = {
   PSNR: "how alike pictures of lit spheres are, in decibels; more is better",
   SSIM: "how alike their structures are; 1 is equal",
@@ -154,10 +155,10 @@ const explained = (name) => make("abbr", {title: kExplained[name]}, name);
 const explanations = () => make("details", {}, make("summary", {}, "What the figures are"),
   make("dl", {}, ...Object.entries(kExplained).flatMap(([name, text]) => [make("dt", {}, name), make("dd", {}, `${text}.`)])));
 
-// A long name without its middle: its end tells fits of one file apart.
+// Shortens a long name in the middle, since the ends of names distinguish fits of one file.
 const shortened = (name) => make("span", {class: "name", title: name}, name.length > 17 ? `${name.slice(0, 8)}…${name.slice(-8)}` : name);
 
-// How far off a model of scattered samples may be, measured or not, by the incidence.
+// Shows the expected error of a model of scattered samples by incidence, at measured and other directions.
 function expectedTable(expected, ofReference, ofModel) {
   const bands = Object.keys(expected.itself.from_theta_i_deg);
   const values = ({relative, from_theta_i_deg: by}) => [relative, ...bands.map((band) => by[band])].map((x) => (x === undefined ? "" : figure(x, 3)));
@@ -165,7 +166,7 @@ function expectedTable(expected, ofReference, ofModel) {
                [row([ofReference, ...values(expected.itself)]), row([ofModel, ...values(expected)])]);
 }
 
-// What compare prints of a model below its first line: albedos, and figures where something was measured.
+// Shows compare's further figures of a model: albedos, and figures at nodes where something was measured.
 function moreFigures(reference, model, {albedo, nodes, expected, unknown_fraction: unknown, unknown_pixels: pixels}) {
   const mean = (values) => values.reduce((sum, x) => sum + x, 0) / values.length;
   const names = () => [shortened(reference.name), shortened(model.name)], [ofReference, ofModel] = names();
@@ -180,7 +181,7 @@ function moreFigures(reference, model, {albedo, nodes, expected, unknown_fractio
   ];
 }
 
-// Its fits, what stands beside it and what has stood there.
+// Returns the fits of a reference, the entry beside it, and entries that were beside it before.
 const comparedWith = (reference) => state.entries.filter((entry) => reference && entry !== reference && entry.info && !isSurface(entry) && !isSurface(reference) &&
   (entry.parent === reference.id || entry === state.beside || judgedOf(reference, entry)));
 
@@ -193,7 +194,7 @@ function drawFigures() {
   }
   const heads = ["Model", ...Object.keys(kExplained).map(explained)];
   const rows = models.map((model) => {
-    const f = judgedOf(reference, model)?.figures ?? {};  // none yet of what was just edited
+    const f = judgedOf(reference, model)?.figures ?? {};  // an edited model has no figures yet
     return row([make("button", {type: "button", title: model.name, onclick: () => showBeside(model)}, model.model ? bytesText(model.info.bytes) : model.name),
                 ...[f.psnr === null ? Infinity : f.psnr, f.ssim, f.relative, f.rms_log, f.log_cos].map((x, k) => figure(x, k === 0 ? 4 : 3))], {"data-shown": model === state.beside});
   });
@@ -228,13 +229,13 @@ export function start() {
     chosen(name);
     shown(name);
   };
-  // by default an anisotropic source takes six fetches
+  // The default takes six fetches for an anisotropic source.
   const setFetches = () => {
     presets.default.fetches = referenceOf(state.shown)?.material.isotropic === false ? "6" : "2";
     if (isDefault()) fetches.value = presets.default.fetches;
     hint();
   };
-  // what is typed is taken as it stands: the default is chosen by its button alone
+  // Typed values are used as they stand. The default is chosen by its button alone.
   const other = () => {
     choose(Object.keys(presets).find((name) => name !== "default" && presets[name].budget === budget.value.trim() && presets[name].fetches === fetches.value.trim()));
     hint();

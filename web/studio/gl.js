@@ -1,4 +1,4 @@
-// A little WebGL2: programs, textures, targets.
+// A few functions for WebGL2: programs, textures, targets.
 
 export function program(gl, vertex, fragment) {
   const made = gl.createProgram();
@@ -35,7 +35,7 @@ export function mesh(gl, {vertices, indices}) {
   return {array, count: indices.length};
 }
 
-// A filtered texture; a depth makes it 3-D. `repeat`: the axes that go round, of "s", "t", "r".
+// Makes a filtered texture, with a depth a 3-D one. `repeat` names the axes that repeat, of "s", "t", "r".
 export function texture(gl, {width, height, depth = 0, internal, format, type, data, repeat = "", filter = gl.LINEAR}) {
   const kind = depth ? gl.TEXTURE_3D : gl.TEXTURE_2D, handle = gl.createTexture();
   gl.activeTexture(gl.TEXTURE0);
@@ -50,7 +50,7 @@ export function texture(gl, {width, height, depth = 0, internal, format, type, d
   return {handle, kind};
 }
 
-// A map of a surface with its levels, which repeats.
+// Makes a map of a surface with its levels; it repeats.
 export function mapTexture(gl, {width, height, levels, gl: {internalFormat, format, type}}) {
   const handle = gl.createTexture(), kind = gl.TEXTURE_2D;
   gl.activeTexture(gl.TEXTURE0);
@@ -64,7 +64,7 @@ export function mapTexture(gl, {width, height, levels, gl: {internalFormat, form
   return {handle, kind};
 }
 
-// A texture to draw into; with `deep` a depth buffer too.
+// Makes a texture to draw into, with `deep` also a depth buffer.
 export function target(gl, width, height, deep) {
   const color = texture(gl, {width, height, internal: gl.RGBA32F, format: gl.RGBA, type: gl.FLOAT, data: null, filter: gl.NEAREST});
   const frame = gl.createFramebuffer(), depth = deep ? gl.createRenderbuffer() : null;

@@ -1,14 +1,14 @@
-// A material as GLSL: `vec3 brdf(vec3 wi, vec3 wo)` in the local frame, the textures it reads, and the roughness of its
-// highlight. A model or surface brings its own shader, MERL's and RGL's tables are read as they are; anything else is
-// tabulated over half/difference angles.
+// Turns a material into GLSL: `vec3 brdf(vec3 wi, vec3 wo)` in the local frame, the textures that it reads, and the
+// roughness of its highlight. A model or surface brings its own shader. MERL's and RGL's tables are read as they are.
+// Other materials are tabulated over half/difference angles.
 import {mapTexture, texture} from "./gl.js";
 import {fromHalfDiff, fromRgl, kAngles} from "./gpu_exact.js";
 import {add, direction, normalize, scale, toRgb} from "./vectors.js";
 
 const kHalfPi = Math.PI / 2;
-const kMaxStored = 32768;  // of what is stored; larger values are scaled down
+const kMaxStored = 32768;  // limit of stored values; larger ones are scaled down
 
-// Cells of the table: theta_h crowds at the normal, azimuths go round. A coarse one comes first.
+// Cells of the table. theta_h is denser near the normal, and azimuths repeat. A coarse table comes first.
 const kSizes = {
   isotropic: [{thetaH: 64, thetaD: 24, phiD: 16}, {thetaH: 128, thetaD: 64, phiD: 48}],
   anisotropic: [{thetaH: 48, thetaD: 16, phiD: 16, phiH: 16}, {thetaH: 80, thetaD: 24, phiD: 24, phiH: 36}],
@@ -24,7 +24,7 @@ vec3 brdf(vec3 wi, vec3 wo) {
   return brdf_scale * textureLod(brdf_table, at, 0.0).rgb;
 }`;
 
-// theta_h and theta_d are filtered; slices of the two azimuths are mixed here.
+// The texture filters theta_h and theta_d. The shader interpolates between slices of the two azimuths.
 const kAnisotropic = `
 uniform highp sampler3D brdf_table;
 uniform float brdf_scale;
@@ -44,7 +44,8 @@ vec3 brdf(vec3 wi, vec3 wo) {
   return brdf_scale * mix(first, second, part.x);
 }`;
 
-// rgb of all cells, theta_h fastest, then theta_d, phi_d, phi_h; nothing where the material was closed meanwhile.
+// Returns rgb of all cells, theta_h fastest, then theta_d, phi_d, phi_h. Returns null where the material was closed
+// meanwhile.
 async function tabulate(material, {phiH = 1, ...size}, alive) {
   const count = size.thetaH * size.thetaD * size.phiD, values = new Float32Array(3 * count * phiH);
   for (let m = 0; m < phiH; ++m) {
@@ -55,7 +56,7 @@ async function tabulate(material, {phiH = 1, ...size}, alive) {
   return values;
 }
 
-// Stored as halves: no value is negative, unknown or too large for them.
+// Prepares values for halves: none is negative, unknown or too large. Returns the factor that they were divided by.
 function storable(values) {
   let largest = 0;
   for (let i = 0; i < values.length; ++i) {
@@ -67,7 +68,7 @@ function storable(values) {
   return factor;
 }
 
-// alpha of the GGX lobe whose highlight is as wide as this one, along the tangent and across it.
+// Returns alpha of the GGX lobe whose highlight is as wide as this one, along the tangent and across it.
 async function roughness(material) {
   const steps = 60, wi = [], wo = [], tilt = Math.PI / 9;
   const angles = Array.from({length: steps}, (_, k) => kHalfPi * 0.8 * (k / (steps - 1)) ** 2);
@@ -85,10 +86,11 @@ async function roughness(material) {
   });
 }
 
-// Floats that WebGL2 would not filter are stored as halves; values are near 1.
+// Floats that WebGL2 may not filter are stored as halves; values are near 1.
 const kFiltered = {R32F: "R16F", RGB32F: "RGB16F", RGBA32F: "RGBA16F"};
 
-// What of a pixel is the same for all lights: nothing, or the place of a surface, whose texels may be turned.
+// This code computes the terms of a pixel that all lights share: none, or a surface's place, whose texels may be
+// turned.
 const kUniform = `
 void begin(vec2 at) {}
 float facing(vec3 wi) { return wi.z; }`;
@@ -112,7 +114,7 @@ async function fromShader(gl, material) {
   return {glsl: code + call, textures: made, set: () => {}, how: "shader"};
 }
 
-// As it is interpolated; nothing of what has no such table.
+// Draws a measurement by its own interpolation. Returns null where the source has no such table.
 async function fromTables(gl, material) {
   const table = await material.table();
   if (!table) return null;
@@ -133,11 +135,11 @@ async function fromTable(gl, material, size, alive) {
   return {glsl: kAngles + (phiH ? kAnisotropic : kIsotropic) + kUniform, textures: [{name: "brdf_table", ...made}], set, how: "table"};
 }
 
-// Calls ready(form) with {glsl, textures, set(program), alpha, how} once, and again where a finer table follows. alive()
-// says whether the material is still open.
+// Calls ready(form) with {glsl, textures, set(program), alpha, how} once, and again where a finer table follows.
+// alive() returns true while the material is open.
 export async function prepare(gl, {material, model}, alive, ready) {
   const [size, ...finer] = kSizes[material.isotropic ? "isotropic" : "anisotropic"], drawn = model && (material.channels === 1 || material.channels === 3);
-  // asked for at once, before what others ask the same worker for
+  // The request goes first, before other requests to the same worker.
   const own = (drawn ? fromShader(gl, material) : fromTables(gl, material)).then((form) => form ?? fromTable(gl, material, size, alive));
   const freed = () => own.then((form) => form?.textures.forEach(({handle}) => gl.deleteTexture(handle)), () => {});
   let alpha, first;

@@ -1,10 +1,10 @@
-// Measurements drawn as they are interpolated: half/difference tables (MERL) and RGL's tables, whole, on the GPU.
+// Draws measurements by their own interpolation on the GPU: whole half/difference tables (MERL) and RGL's tables.
 import {texture} from "./gl.js";
 import {toRgb} from "./vectors.js";
 
-const kMaxStored = 32768;  // of what is stored; larger values are scaled down
+const kMaxStored = 32768;  // limit of stored values; larger ones are scaled down
 
-// theta_h, phi_h, theta_d, phi_d of a pair.
+// This code computes theta_h, phi_h, theta_d, phi_d of a pair.
 export const kAngles = `
 const float kHalfPi = 1.5707963268;
 // [Rusinkiewicz 1998]
@@ -17,7 +17,8 @@ vec4 angles(vec3 wi, vec3 wo) {
   return vec4(atan(sine, h.z), atan(along.y, along.x), atan(length(d), dot(wi, h)), atan(d.y, d.x));
 }`;
 
-// Holes have no weight, the others' are scaled to sum to 1: that is the filter's sum over the filtered share.
+// Unknown cells have no weight, and the other weights are scaled to sum to 1. This equals the filtered sum divided by
+// the filtered share of known cells.
 const kHalfDiff = `
 uniform highp sampler3D brdf_table;  // phi_d, theta_d, theta_h; rgb where it is known, times 1, else 0
 uniform vec2 brdf_how;               // of stored values; turns of phi_d a circle
@@ -42,7 +43,7 @@ export function fromHalfDiff(gl, {size: [thetaH, thetaD, phiD], fullCircle, chan
   return {glsl: kAngles + kHalfDiff, textures: [{name: "brdf_table", ...made}], set: ({at}) => gl.uniform2f(at("brdf_how"), factor, fullCircle ? 1 : 2)};
 }
 
-// As src/burnish/reflectance/rgl_table.cpp and conditional_warp.cpp have it [Dupuy 2018, sec. 4].
+// This code matches src/burnish/reflectance/rgl_table.cpp and conditional_warp.cpp [Dupuy 2018, sec. 4].
 const kRgl = `
 uniform highp sampler3D brdf_vndf, brdf_spectra;  // slices along z; of vndf density and integral from the row's start
 uniform highp sampler2D brdf_rows, brdf_ndf, brdf_sigma, brdf_nodes;
@@ -133,8 +134,8 @@ vec3 brdf(vec3 wi, vec3 wo) {
   return max(scale * f, 0.0);
 }`;
 
-// Density and integral from its row's start of each node, integral and integral of the rows before of each row; a slice's
-// sum is 1.
+// Returns for each node its density and the integral from its row's start, and for each row its integral and that of
+// the rows before. A slice's sum is 1.
 function warpOf(density, [width, height]) {
   const slice = width * height, nodes = new Float32Array(2 * density.length), rows = new Float32Array((2 * density.length) / width);
   for (let first = 0; first < density.length; first += slice) {

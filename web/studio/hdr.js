@@ -1,6 +1,6 @@
-// Radiance .hdr pictures: rgb floats, rows from the top, at most `most` pixels a side. Throws Error where the bytes say
-// something else. Source: Radiance, its file formats and color.c: rows that are flat, coded by planes, or by pixels of
-// (1, 1, 1, n) that repeat the one before.
+// Reads Radiance .hdr pictures: rgb floats, rows from the top, at most `most` pixels a side. Throws Error where the
+// bytes are no such picture. Rows are flat, coded by planes, or have pixels (1, 1, 1, n) that repeat the pixel before.
+// Source: Radiance, its file formats and color.c.
 export function readHdr(bytes, most = 8192) {
   let at = 0;
   const line = () => {
@@ -17,7 +17,7 @@ export function readHdr(bytes, most = 8192) {
   const [height, width] = [Number(size[1]), Number(size[2])];
   if (!(width > 0 && height > 0 && width <= most && height <= most)) throw new Error(`.hdr: expected at most ${most} x ${most} pixels, found ${width} x ${height}`);
   const row = new Uint8Array(4 * width), begin = at;
-  // once through the bytes: memory for the picture is only taken where all of it is there
+  // The bytes are read once before, so memory for the picture is taken only where all of it exists.
   for (let y = 0; y < height; ++y) readRow();
   at = begin;
   const data = new Float32Array(3 * width * height);
@@ -33,7 +33,7 @@ export function readHdr(bytes, most = 8192) {
   function need(count) {
     if (at + count > bytes.length) throw new Error(`.hdr: expected ${count} bytes at byte ${at}, found ${bytes.length - at}`);
   }
-  // One row as planes of r, g, b and exponent.
+  // Reads one row as planes of r, g, b and exponent.
   function readRow() {
     if (width >= 8 && width < 32768 && bytes[at] === 2 && bytes[at + 1] === 2 && ((bytes[at + 2] << 8) | bytes[at + 3]) === width) readPlanes();
     else readPixels();
@@ -50,7 +50,7 @@ export function readHdr(bytes, most = 8192) {
       if (run) ++at;
     }
   }
-  // Repeats that follow each other are digits of one number, the lowest first.
+  // Consecutive repeats are digits of one number, the lowest first.
   function readPixels() {
     for (let x = 0, digit = 1; x < width;) {
       need(4);

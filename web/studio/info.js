@@ -1,4 +1,4 @@
-// What `info --json` says, as a panel.
+// Shows `info --json` as a panel.
 import {bytesText, find, make, number, pageWords, row, table} from "./dom.js";
 import {onChange, state} from "./state.js";
 
@@ -46,7 +46,7 @@ function facts(info, {drawn, computed, material}) {
 
 export const incidence = ({theta_i_deg, phi_i_deg}) => `${number(theta_i_deg, 3)}°${phi_i_deg > 0 ? `, ${number(phi_i_deg, 3)}°` : ""}`;
 
-const kSomeUnknown = 1e-3, kAllUnknown = 0.999;  // of the hemisphere
+const kSomeUnknown = 1e-3, kAllUnknown = 0.999;  // shares of the hemisphere
 function albedos({albedo}) {
   if (!albedo?.length) return null;
   const names = {1: ["grey"], 3: ["red", "green", "blue"]}[albedo[0].albedo.length] ?? ["1", "2", "3"];
@@ -57,7 +57,7 @@ function albedos({albedo}) {
   }));
 }
 
-// Where a format leaves open how it is read; the same controls stay, and keep the focus.
+// Shows controls where a format leaves its reading open. The same controls stay, and keep the focus.
 function drawReadings(controls = []) {
   const place = find("#readings");
   place.hidden = controls.length === 0;
@@ -65,7 +65,7 @@ function drawReadings(controls = []) {
 }
 
 function draw() {
-  // another one each time: it stands below what another material may have more of
+  // Each material gets a new element, since it stands below parts that other materials may have more of.
   const place = make("div", {id: "info"}), entry = state.shown;
   find("#info").replaceWith(place);
   drawReadings(entry?.readings);
@@ -86,7 +86,7 @@ function draw() {
     albedos(info) ?? "", notes.length ? make("ul", {"aria-label": "Conventions"}, ...notes.map((text) => make("li", {}, text))) : "");
 }
 
-// On phones the panel has a height and is scrolled, by keys too.
+// On phones the panel has a fixed height and is scrolled, by keys too.
 function scroll({matches}) {
   if (matches) find("#info-panel").tabIndex = 0;
   else find("#info-panel").removeAttribute("tabindex");

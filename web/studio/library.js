@@ -1,7 +1,7 @@
-// The one door to the library.
+// This file is the only import of the library.
 export {open, preload} from "./package/index.js";
 
-// Of what was opened just now, which is closed again where it has none.
+// Returns the information of a material just opened. Closes the material where that fails.
 export async function infoOf(material, call) {
   try {
     return await material.info(call);

@@ -1,11 +1,12 @@
-// A link that carries a model: #m=NAME.BASE64URL, the bytes those of its .burnish file. Nothing of it becomes markup.
+// A link that carries a model: #m=NAME.BASE64URL, the bytes of its .burnish file. None of it becomes markup.
 import {openOne} from "./materials.js";
 import {lineOf, say} from "./dom.js";
 
-const kLongest = 1 << 20;  // characters of a fragment, whether it is written or read
+const kLongest = 1 << 20;  // characters of a fragment, both written and read
 const kTag = [0xd9, 0xd9, 0xf7], kText = [0x67, ...new TextEncoder().encode("burnish")];
 
-// Whether the bytes start as a .burnish file does: a tag, a list, its name. No other reader sees a link's bytes.
+// Returns true if the bytes start as a .burnish file does: a tag, a list, its name. No other reader sees a link's
+// bytes.
 const isCompact = (bytes) => [...kTag, 0x80, ...kText].every((byte, k) => (k === kTag.length ? bytes[k] & 0xe0 : bytes[k]) === byte);
 
 function toBase64Url(bytes) {
@@ -19,14 +20,14 @@ function fromBase64Url(text) {
   return Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
 }
 
-// Throws Error where the fragment would be longer than what is read.
+// Throws Error where the fragment would be too long to be read.
 export function linkOf(name, bytes) {
   const short = name.replace(/[^\w-]+/g, "_").slice(0, 40), fragment = `#m=${short}.${toBase64Url(bytes)}`;
   if (fragment.length > kLongest) throw new Error(`A link holds at most ${kLongest.toLocaleString("en")} characters, this model takes ${fragment.length.toLocaleString("en")}: give its .burnish file away`);
   return `${location.origin}${location.pathname}${fragment}`;
 }
 
-// Opens what the page's fragment carries, if it does.
+// Opens the model of the page's fragment, if there is one.
 export async function openLink() {
   const fragment = location.hash;
   if (!fragment.startsWith("#m=")) return;

@@ -1,4 +1,4 @@
-// The lobe in three dimensions: a surface whose distance from the middle is f, or its logarithm, at one theta_i.
+// Draws the lobe in three dimensions: a surface at distance f from the middle, or its logarithm, at one theta_i.
 import {css, make, number, onDrag} from "./dom.js";
 import {add, cross, degrees, direction, dot, normalize, radians, scale} from "./vectors.js";
 
@@ -6,7 +6,7 @@ const kThetas = 31, kPhis = 60, kDecades = 3.5, kSize = [760, 424];
 const turned = {yaw: 0.6, pitch: 0.45};
 let redraw = () => {};
 
-// Pairs over the hemisphere of wo, theta fastest; the mirror direction at phi 0.
+// Returns pairs over the hemisphere of wo, theta fastest. The mirror direction is at phi 0.
 function hemisphere(theta) {
   const wi = direction(theta, Math.PI), pairs = [];
   for (let j = 0; j < kPhis; ++j)
@@ -47,7 +47,7 @@ function newCanvas(place) {
   return canvas;
 }
 
-// Quadrangles from the farthest to the nearest, on a ground of rings.
+// Draws quadrangles from the farthest to the nearest, on a ground of rings.
 function paint(canvas, points, theta) {
   const pen = canvas.getContext("2d"), [width, height] = kSize, size = 300;
   const c = Math.cos(turned.yaw), s = Math.sin(turned.yaw), e = Math.sin(turned.pitch), d = Math.cos(turned.pitch);

@@ -1,23 +1,23 @@
-// Opening and listing: files dropped, chosen or pasted, analytic models, the sample, links.
+// Opens and lists materials: files dropped, chosen or pasted, analytic models, the sample, links.
 import {isStopped, sayError, stoppable} from "./busy.js";
 import {bytesText, find, latest, lineOf, make, replaceKeepingFocus, say} from "./dom.js";
 import {infoOf, open} from "./library.js";
 import {add, changed, entryOf, onChange, release, remove, show, showBeside, showOpened, state} from "./state.js";
 
-let stop = null;                // of what is being opened
-let opens = Promise.resolve();  // ends with the last that was asked for
+let stop = null;                // aborts the present opening
+let opens = Promise.resolve();  // ends with the last request
 
-const kNamed = 4;  // of files that could not be opened, beside the first
-const kMaxChoices = 5000;  // of a file of several materials
+const kNamed = 4;  // files named that could not be opened, beside the first
+const kMaxChoices = 5000;  // materials of one file in the list
 
-// One task after another, in their order; what was dropped first is opened first.
+// Runs tasks one after another in their order, so the first file dropped is opened first.
 function queued(task) {
   const mine = opens.then(task);
   opens = mine.catch(() => {});
   return mine;
 }
 
-// Opens one thing, adds it to the list and shows it. Throws what is wrong with it.
+// Opens a BRDF, adds it to the list and shows it. Throws the error of opening.
 async function opening(data, name, more, options) {
   const mine = (stop = new AbortController());
   const bar = find("#opening-bar");
@@ -33,7 +33,7 @@ async function opening(data, name, more, options) {
     if (material.entries.length) entry.sliders = [chooser(entry, wanted)];
     changed();
     showOpened(entry);
-    // what it is in full takes longer than showing it
+    // The full information takes longer than the picture.
     bar.removeAttribute("value");
     find("#opening-text").textContent = `${name}: what it is`;
     entry.info = await material.info({signal: mine.signal});
@@ -51,7 +51,7 @@ async function opening(data, name, more, options) {
 
 const wrong = (error, name) => (lineOf(error).includes(name) ? lineOf(error) : `${name}: ${lineOf(error)}`);
 
-// The same; nothing where it was stopped or is no BRDF, and then says so.
+// Does the same, but shows an error or a stop and returns null.
 export async function openOne(data, name, more = {}, options = {}) {
   try {
     return await queued(() => opening(data, name, more, options));
@@ -62,8 +62,8 @@ export async function openOne(data, name, more = {}, options = {}) {
   }
 }
 
-// Gives an entry another material, the latest that made(signal) opened; then done() is told, or undo() where it could not be
-// made or was stopped.
+// Gives an entry another material, the latest that made(signal) opened, then calls done(). Calls undo() where it could
+// not be made or was stopped.
 export function renewer(entry, made, {done, undo, name = () => entry.name}) {
   return latest(async () => {
     if (!state.entries.includes(entry)) return;
@@ -88,8 +88,8 @@ export function renewer(entry, made, {done, undo, name = () => entry.name}) {
   });
 }
 
-// Reads an entry's file again, another way: {how, last, renew, undone}. What cannot be read leaves the last way that could,
-// which functions in `undone` are told.
+// Reads an entry's file again, another way: {how, last, renew, undone}. After a failure the last readable way stays,
+// and functions in `undone` are called.
 function reader(entry, data, file, options) {
   const how = {...options}, last = {...options}, undone = [];
   let asked;
@@ -104,7 +104,7 @@ function reader(entry, data, file, options) {
   return {how, last, renew, undone};
 }
 
-// A list or a box that sets how[name].
+// Returns a list or a box that sets how[name].
 function choice(title, name, input, {how, last, renew, undone}, aside = "") {
   const box = input.type === "checkbox", before = box ? input.checked : input.value;
   input.dataset.reading = name;
@@ -118,11 +118,11 @@ function choice(title, name, input, {how, last, renew, undone}, aside = "") {
 }
 const listOf = (values) => make("select", {}, ...values.map((value) => make("option", {value}, value)));
 
-// One of several materials of a file.
+// Chooses one of several materials of a file.
 const chooser = ({material: {entries}}, wanted) =>
   choice("Material", "entry", listOf(entries.slice(0, kMaxChoices)), wanted, String(entries.length));
 
-// What a format leaves open: the light under which spectra became colours, the side, whether values have the cosine.
+// Returns controls for the options that a format leaves open: the light of spectra, the side, the cosine in values.
 function readings({info}, wanted) {
   const box = () => make("input", {type: "checkbox"}), choices = [];
   if (info.illuminant) choices.push(choice("Light", "illuminant", listOf(["E", "D50", "D65", "A"]), wanted));
@@ -131,13 +131,13 @@ function readings({info}, wanted) {
   return choices;
 }
 
-// One message for all that are none; stopping one leaves out what was given after it, and says so. A decoder of Neural
-// Processes belongs to the codes beside it.
+// Opens files, with one message for all that are no BRDF. A stop leaves out the later files, and says so. A decoder of
+// Neural Processes belongs to the codes beside it.
 const openFiles = (files, onPicture) => queued(() => openEach(files, onPicture));
 async function openEach(files, onPicture) {
   const decoder = files.find(({name}) => /\.f32$/i.test(name)), codes = decoder && files.find(({name}) => /\.csv$/i.test(name)), said = [];
   const wanted = files.filter((f) => !codes || f !== decoder);
-  if (find("#message").dataset.kind === "error") say("");  // of what was tried before
+  if (find("#message").dataset.kind === "error") say("");  // clears the error of an earlier attempt
   for (const [k, file] of wanted.entries()) {
     try {
       if (/\.(hdr|exr)$/i.test(file.name) && (await onPicture(file))) continue;
@@ -173,10 +173,10 @@ function row(entry) {
 
 function draw() {
   const list = find("#list"), at = [...list.children].findIndex((before) => before.contains(document.activeElement));
-  // of a row that is gone the next one's button is at hand, or at last the one that opens files
+  // After a row is gone, the next row's button gets the focus, or at last the button that opens files.
   if (!replaceKeepingFocus(list, ...(state.entries.length ? state.entries.map(row) : [make("li", {class: "hint"}, "Nothing is open.")])))
     ((list.children[at] ?? list.lastElementChild).querySelector(".close") ?? find("#choose")).focus();
-  // the rows that are shown are in sight
+  // The shown rows are scrolled into sight.
   const rows = [...list.querySelectorAll("[data-shown]")], [first, last] = [rows[0], rows.at(-1)];
   if (first) list.scrollTop = Math.min(first.offsetTop, Math.max(list.scrollTop, last.offsetTop + last.offsetHeight - list.clientHeight));
   const beside = find("#beside");
@@ -197,7 +197,7 @@ export function start(onPicture) {
   find("#opening-stop").addEventListener("click", () => stop?.abort());
   find("#beside").addEventListener("change", (event) => showBeside(entryOf(Number(event.target.value))));
 
-  // the whole page is where things are dropped
+  // Files may be dropped anywhere on the page.
   let inside = 0;
   const carries = (event) => event.dataTransfer?.types.includes("Files");
   window.addEventListener("dragenter", (event) => {

@@ -1,4 +1,5 @@
-// Slices, the (theta_h, theta_d) picture, albedo and lobe of what is shown: the left material solid, the right one dashed.
+// Plots slices, the (theta_h, theta_d) picture, albedo and lobe of the shown materials. The left one is solid, the
+// right one dashed.
 import {linePath, plot, shareOfAxis} from "./chart.js";
 import {css, find, latest, lineOf, make, number, say, svg, tickText} from "./dom.js";
 import {drawLobe} from "./lobe.js";
@@ -10,7 +11,7 @@ const settings = {theta: radians(30), phiD: radians(90), log: true, channel: "rg
 const kSteps = 177, kDecades = 4;
 const sides = () => [state.shown, state.beside].filter(Boolean);
 
-// Channels of rgb triples as lines: [{color, values}].
+// Returns channels of rgb triples as lines: [{color, values}].
 function channelsOf(rgb) {
   const take = (c) => Array.from({length: rgb.length / 3}, (_, i) => rgb[3 * i + c]);
   const names = ["--red", "--green", "--blue"];
@@ -22,7 +23,7 @@ function channelsOf(rgb) {
   return settings.channel === "rgb" ? all : [all[Number(settings.channel)]];
 }
 
-// rgb of each pair, NaN where nothing is known.
+// Returns rgb of each pair, NaN where it is unknown.
 async function evaluate(entry, pairs) {
   const wi = new Float32Array(pairs.length * 3), wo = new Float32Array(pairs.length * 3);
   pairs.forEach(([a, b], k) => {
@@ -32,7 +33,7 @@ async function evaluate(entry, pairs) {
   return toRgb(await entry.material.evaluate(wi, wo), entry.material.channels);
 }
 
-// In the plane of incidence; negative theta_o lie on the light's side.
+// Samples the plane of incidence. Negative theta_o lie on the light's side.
 async function sliceLines() {
   const angles = Array.from({length: kSteps}, (_, k) => -88 + k), wi = direction(settings.theta, Math.PI);
   const pairs = angles.map((t) => [wi, direction(radians(Math.abs(t)), t < 0 ? Math.PI : 0)]);
@@ -42,7 +43,7 @@ async function sliceLines() {
   return {angles, lines};
 }
 
-// The range of a logarithmic axis: whole decades up to the largest value.
+// Returns the range of a logarithmic axis: whole decades up to the largest value.
 function range(lines) {
   const values = lines.flatMap((line) => line.values).filter(Number.isFinite), top = Math.max(...values, 1e-6);
   if (!settings.log) return [0, top * 1.05];
@@ -77,14 +78,14 @@ function drawPolar({angles, lines}) {
                   degree === 0 ? "" : svg("text", {x, y: y + 3, fill: soft, "text-anchor": degree < 0 ? "end" : "start"}, `${Math.abs(degree)}°`));
   }
   for (const line of lines) figure.append(linePath(line.values.map((v, k) => at(angles[k], grow(v))), line));
-  // above lines and cut out of them
+  // Texts lie above lines and are cut out of them.
   for (const value of rings)
     figure.append(svg("text", {x: middle[0] + 3, y: middle[1] - radius * grow(value) - 3, fill: soft, stroke: css("--panel"), "stroke-width": 4,
                                "stroke-linejoin": "round", "paint-order": "stroke", "data-ring": value}, tickText(value, 2)));
   const tip = at(-degrees(settings.theta), 1), accent = css("--accent");
   figure.append(svg("path", {d: `M${place(tip)}L${place(middle)}`, stroke: accent, "stroke-width": 1.6}),
                 svg("circle", {cx: tip[0], cy: tip[1], r: 6, fill: accent}),
-                svg("circle", {cx: tip[0], cy: tip[1], r: 22, fill: "transparent", cursor: "move", class: "handle"}));  // for a finger
+                svg("circle", {cx: tip[0], cy: tip[1], r: 22, fill: "transparent", cursor: "move", class: "handle"}));  // wide enough for a finger
   onDrag(figure, ([x, y, w, h]) => {
     const dx = (x / w) * width - middle[0], dy = middle[1] - (y / h) * height;
     setTheta(degrees(Math.abs(Math.atan2(dx, Math.max(dy, 1e-3)))));
@@ -98,7 +99,7 @@ function onDrag(figure, told) {
     dragging = told;
     move(event);
   });
-  // a finger on the handle moves that and not the page
+  // A finger on the handle moves the handle and not the page.
   figure.addEventListener("touchstart", (event) => event.target.classList.contains("handle") && event.preventDefault(), {passive: false});
 }
 let dragging = null;
@@ -121,7 +122,7 @@ const guarded = (task) => latest(async () => {
   try {
     await task();
   } catch (error) {
-    // of a material that was closed meanwhile nothing is said
+    // Errors of a material that was closed meanwhile are not shown.
     if (before.every((entry) => state.entries.includes(entry))) say(lineOf(error), "error");
   }
 });
@@ -141,7 +142,7 @@ const redrawSlices = guarded(async () => {
   await drawLobe(find("#lobe"), state.beside ?? state.shown, settings, evaluate);
 });
 
-// The usual picture of an isotropic BRDF: theta_h to the right as its square root, theta_d upwards.
+// Draws the usual picture of an isotropic BRDF: theta_h to the right by its square root, theta_d upwards.
 async function halfDiffImage(entry, scaleOf) {
   const size = 96, pairs = [], places = [];
   for (let y = 0; y < size; ++y)
@@ -163,7 +164,7 @@ async function halfDiffImage(entry, scaleOf) {
   canvas.getContext("2d").putImageData(image, 0, 0);
   return {figure: make("figure", {}, canvas, make("figcaption", {}, entry.name)), scale};
 }
-// Grey levels by the logarithm, from the 2nd percentile to the largest.
+// Maps logarithms to grey levels, from the 2nd percentile to the largest value.
 function logScale(rgb) {
   const positive = [...rgb].filter((x) => x > 0).sort((a, b) => a - b);
   const low = Math.log(Math.max(positive[Math.floor(0.02 * positive.length)] ?? 1e-3, 1e-5)) - 0.5, high = Math.log(positive.at(-1) ?? 1);
@@ -231,7 +232,7 @@ export function start() {
   for (const end of ["pointerup", "pointercancel"]) find("#slices").addEventListener(end, () => (dragging = null));
   onChange((what) => {
     if (what !== "shown" && !what.renewed) return;
-    // of grey there is one
+    // A grey material has one channel.
     find("#channel").disabled = sides().length > 0 && sides().every(({material}) => material.channels === 1);
     redraw();
   });

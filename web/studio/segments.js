@@ -1,5 +1,5 @@
-// The buttons of a row as a radio group: one is chosen, arrow keys move within it. Returns a function that chooses without
-// telling; a value that no button has chooses none.
+// Makes the buttons of a row a radio group: one is chosen, and arrow keys move within it. Returns a function that
+// chooses a button without calling told. A value that no button has chooses none.
 export function segments(place, told) {
   const buttons = [...place.children];
   function choose(value) {

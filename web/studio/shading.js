@@ -23,7 +23,7 @@ void main() {
   gl_Position = vec4(zoom * place.xy + jitter * w, (w * (far + near) - 2.0 * far * near) / (far - near), w);
 }`;
 
-// Light from all around, y up; a studio has three soft boxes in a dim room.
+// Environment lighting, y up; a studio has three soft boxes in a dim room.
 const kEnvironment = `
 uniform int around;
 uniform highp sampler2D picture;
@@ -58,8 +58,8 @@ vec3 environment(vec3 d) {
   return vec3(0.0);
 }`;
 
-// What a pixel is, and the directions from which it is lit. Of those from all around half are drawn by the cosine, half
-// by the highlight of GGX facets as wide as the material's.
+// This code finds a pixel's place and the directions that light it. Half of the environment's directions are drawn by
+// the cosine, half by the highlight of GGX facets as wide as the material's.
 const kPixel = `
 in vec3 place, n, t;
 in vec2 at;
@@ -136,8 +136,8 @@ void main() {
   color = vec4(max(sum, 0.0), 1.0);
 }`;
 
-// What the light of a pixel is summed of: the lights, then the directions from all around. Of one of them wi, wo or what
-// f_r is multiplied by; alpha where there is light.
+// Draws one part of a pixel's light: first the lights, then the environment's directions. The output is wi, wo or the
+// factor of f_r. Alpha is set where there is light.
 export const partFragment = `#version 300 es
 precision highp float;
 precision highp int;
@@ -162,7 +162,7 @@ void main() {
   color = vec4(which == 0 ? wi.xyz : which == 1 ? wo : is ? weight * wi.z / wi.w : vec3(0.0), is);
 }`;
 
-// The values at given pairs, one a pixel.
+// Draws the values at given pairs, one a pixel.
 export const pairsFragment = (brdf) => `#version 300 es
 precision highp float;
 precision highp int;
@@ -194,7 +194,7 @@ void main() {
   color = mix(texelFetch(before, p, 0), texelFetch(frame, p, 0), share);
 }`;
 
-// The mean of what frames are off, where it is known.
+// Averages the frames' errors where the exact values are known.
 export const offFragment = `#version 300 es
 precision highp float;
 uniform highp sampler2D before, frame, exact;
@@ -207,7 +207,8 @@ void main() {
   color = vec4(mix(texelFetch(before, p, 0).rgb, off, share), 0.0);
 }`;
 
-// Each side is its sum and what that is off. What is shown: 0 the left material, 1 the right one, 2 both around the divider, 3 their difference.
+// Shows each side as its sum corrected by its error. `shown` is 0 for the left material, 1 for the right one, 2 for
+// both around the divider, 3 for their difference.
 export const pictureFragment = `#version 300 es
 precision highp float;
 uniform highp sampler2D left, right, left_off, right_off;
@@ -244,7 +245,7 @@ void main() {
   color = vec4(seen, 1.0);
 }`;
 
-// Depths, and short lines along the tangents.
+// Draws depths, and short lines along the tangents.
 export const lineFragment = `#version 300 es
 precision highp float;
 uniform vec3 ink;

@@ -2,7 +2,7 @@
 import {parts, turned} from "./teapot.js";
 import {add, cross, normalize, scale} from "./vectors.js";
 
-// A grid over [0, 1]^2, appended to the mesh: at(u, v) gives [position, normal, tangent].
+// Appends a grid over [0, 1]^2 to the mesh. at(u, v) gives [position, normal, tangent].
 function appendGrid(mesh, columns, rows, at) {
   const first = mesh.vertices.length / 9;
   for (let i = 0; i <= columns; ++i)
@@ -39,7 +39,7 @@ export function knot() {
   });
 }
 
-// Point and derivatives of a bicubic Bezier patch.
+// Returns the point and derivatives of a bicubic Bezier patch.
 function patchAt(patch, u, v) {
   const basis = (x) => [(1 - x) ** 3, 3 * x * (1 - x) ** 2, 3 * x * x * (1 - x), x ** 3];
   const slope = (x) => [-3 * (1 - x) ** 2, 3 * (1 - x) * (1 - 3 * x), 3 * x * (2 - 3 * x), 3 * x * x];
@@ -55,7 +55,7 @@ function patches() {
   parts.forEach((numbers, part) => {
     for (let image = 0; image < (turned[part] ? 4 : 2); ++image) {
       const patch = Array.from({length: 16}, (_, k) => {
-        // one reflection turns the surface inside out: run along u the other way
+        // One reflection turns the surface inside out, so u runs the other way.
         const from = image === 1 || image === 2 ? (k & ~3) + 3 - (k & 3) : k;
         const [x, y, z] = numbers.slice(3 * from, 3 * from + 3);
         return [image >= 2 ? -x : x, image % 2 ? -y : y, z];
@@ -70,7 +70,8 @@ export function teapot() {
   for (const patch of patches())
     appendGrid(mesh, 14, 14, (u, v) => {
       const {point} = patchAt(patch, u, v);
-      // at the knob's top and the bottom's middle a row of control points falls together: a step inwards is none
+      // At the knob's top and the bottom's middle a row of control points coincides. A step inwards avoids the missing
+      // derivative.
       const inner = patchAt(patch, u, Math.min(Math.max(v, 1e-3), 1 - 1e-3));
       const normal = normalize(cross(inner.du, inner.dv));
       const tangent = normalize([-normal[1], normal[0], 1e-9]);

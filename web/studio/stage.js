@@ -11,7 +11,7 @@ import {View} from "./view.js";
 let touched = 0;  // the light that was moved last
 let view = null, exposedFor = null, exposes = true;  // until the slider is moved
 
-// Where a light's handle stands: its direction seen from the front, at this share of the half frame.
+// A light's handle stands at its direction seen from the front, at this share of the half frame.
 const kRing = 0.94;
 
 function rgbOfCss(name) {
@@ -131,7 +131,7 @@ function drawNames() {
   find("#right-name").textContent = state.beside?.name ?? "";
 }
 
-// No direction along the surface stands out of an isotropic material.
+// An isotropic material has no preferred direction along the surface, so no tangents are shown.
 function showTangents() {
   const box = find("#tangents");
   box.disabled = [state.shown, state.beside].every((entry) => !entry || (entry.material.isotropic && !isSurface(entry)));
@@ -166,7 +166,8 @@ function choose(name) {
   view?.set({shown});
 }
 
-// Light from all around out of a dropped picture; false where it is none that is read here. Throws what is wrong with it.
+// Takes environment lighting from a dropped picture. Returns false for a file that is no readable picture. Throws the
+// picture's error.
 export async function openPicture(file) {
   const bytes = new Uint8Array(await file.arrayBuffer()), hdr = /\.hdr$/i.test(file.name);
   if (!hdr && !isPicture(bytes)) return false;

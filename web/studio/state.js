@@ -1,5 +1,5 @@
-// What is open and what is shown: entries {id, name, material, model, parent, info, drawn, computed, seen}, `shown` at the
-// left and, where it is not null, `beside` it at the right. `computed`: how much of the picture the library did.
+// The open and shown entries {id, name, material, model, parent, info, drawn, computed, seen}. `shown` is at the left
+// and, where it is not null, `beside` at the right. `computed` is the share of the picture that the library computed.
 
 const listeners = [];
 let counter = 0;
@@ -13,10 +13,10 @@ export function changed(what = "entries") {
 
 export const entryOf = (id) => state.entries.find((entry) => entry.id === id) ?? null;
 export const modelsOf = (entry) => state.entries.filter((other) => other.parent === entry.id);
-// What a fit is compared with: an entry's own source, or itself.
+// Returns the reference of a fit: an entry's own source, or itself.
 export const referenceOf = (entry) => (entry && entry.parent !== null ? entryOf(entry.parent) : entry);
 export const isSurface = (entry) => typeof entry?.material.place === "function";
-// The model whose shader is given away: the right one if it is a model, else the left one.
+// Returns the model whose shader is exported: the right one if it is a model, else the left one.
 export const modelShown = () => [state.beside, state.shown].find((entry) => entry?.model) ?? null;
 
 export function add(entry) {
@@ -33,7 +33,7 @@ export function show(entry) {
   else [state.shown, state.beside] = [entry, entry ? modelsOf(entry).at(-1) ?? null : null];
   changed("shown");
 }
-// What was opened just now: a model and a measurement side by side where the other one is shown.
+// Shows an entry just opened. A model stands beside the shown measurement, or a measurement beside the shown model.
 export function showOpened(entry) {
   const {shown} = state, isModel = (of) => of.model && !isSurface(of);
   if (shown?.material.measurement && isModel(entry)) [state.shown, state.beside] = [shown, entry];
@@ -46,13 +46,13 @@ export function showBeside(entry) {
   changed("shown");
 }
 
-// Closes what an entry has open: its material and, where that was edited, what it was made of.
+// Closes an entry's material and, where that was edited, the original.
 export function release({material, original}) {
   material.close?.();
   if (original !== material) original?.close?.();
 }
 
-// Closes an entry and the models fitted to it; their memory is given back.
+// Closes an entry and the models fitted to it, which frees their memory.
 export function remove(entry) {
   const gone = [entry, ...modelsOf(entry)];
   state.entries = state.entries.filter((e) => !gone.includes(e));

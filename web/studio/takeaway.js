@@ -1,4 +1,4 @@
-// Everything that can be taken away: shaders, files, pictures, a link.
+// Exports: shaders, files, pictures, a link.
 import {sayError, stoppable} from "./busy.js";
 import {bytesText, css, find, make, pageWords, replaceKeepingFocus, saveFile, say} from "./dom.js";
 import {linkOf} from "./link.js";
@@ -9,10 +9,10 @@ import {zip} from "./zip.js";
 const languages = {glsl: "GLSL 4.50", glsl_es: "GLSL ES 3.00", hlsl: "HLSL", slang: "Slang", wgsl: "WGSL", msl: "Metal", cpp: "C++"};
 const modelFiles = {burnish: ".burnish", model: "OpenEXR", ktx2: "KTX2 textures", three: "three.js", babylon: "Babylon.js", html: "Page", gltf: "glTF",
                     materialx: "MaterialX", usda: "USD", mdl: "MDL"};
-// what OpenPBR's inputs are written as, without a fit
+// Formats of OpenPBR's inputs, without a fit.
 const openPbrFiles = {materialx: "MaterialX", usda: "USD", gltf: "glTF"};
 const surfaceFiles = {burnish: ".burnish", ktx2: "KTX2 textures", png: "PNG maps", three: "three.js", html: "Page", gltf: "glTF"};
-// what anything can be written as, and the endings of names
+// Formats of any material, and the endings of names.
 const anyFiles = {merl: "MERL", utia: "UTIA", rgl: "RGL", mbsdf: "MBSDF", zemax: "Zemax", tensortree: "Tensor tree", openmaterial: "OpenMATERIAL",
                   astm: "ASTM", csv: "CSV", exr: "EXR slices"};
 const kExtensions = {merl: "binary", utia: "bin", rgl: "bsdf", zemax: "zemax.bsdf", tensortree: "xml", openmaterial: "xompt", model: "exr"};
@@ -20,20 +20,21 @@ const kLongLink = 32 << 10;
 
 let language = "glsl_es", textOpen = false;
 
-// Of files and functions: letters, digits and single underscores, a letter first. No ending is what is no word, as in 2.4 KB.
+// Returns a name for files and functions: letters, digits and single underscores, a letter first. An ending begins with
+// a letter, so that of 2.4 KB is none.
 function stem(entry) {
   const words = entry.name.replace(/\.[a-z]\w*$/i, "").split(/[^a-z0-9]+/i).filter(Boolean).join("_").slice(0, 60).replace(/_$/, "");
   return /^[a-z]/i.test(words) ? words : ["brdf", words].filter(Boolean).join("_");
 }
 
-// Exports are bytes, or files {name, bytes}.
+// Returns an export's files {name, bytes}. An export gives bytes or files.
 async function filesOf(entry, kind, signal) {
   const onLosses = (losses) => say(pageWords(`${entry.name} as ${kind}: lost: ${losses.join("; ")}`));
   const made = await entry.material.export(kind, {name: stem(entry)}, {signal, onLosses});
   return Array.isArray(made) ? made : [{name: `${stem(entry)}.${kExtensions[kind] ?? kind}`, bytes: made}];
 }
 
-// What a button does, with a signal that ends it.
+// Runs a button's task with a signal that ends it.
 const guarded = (task) => async (event) => {
   const button = event.currentTarget, focused = document.activeElement === button;
   button.disabled = true;
@@ -54,7 +55,7 @@ const saveButton = (entry, kind, title) =>
     else saveFile(`${stem(entry)}.${kind}.zip`, await zip(files));
   })}, title);
 
-// Whether it was; pages that are not served securely have no clipboard.
+// Returns true if the text was copied. Pages that are not served securely have no clipboard.
 async function copy(text, what) {
   try {
     await navigator.clipboard.writeText(text);
@@ -103,14 +104,14 @@ function linkGroup(entry) {
       find("#link").dataset.link = link;
       said.textContent = `${bytesText(bytes.length)} as ${link.length.toLocaleString("en")} characters${bytes.length > kLongLink ? "; some programs cut links this long" : ""}.`;
       if (await copy(link, "Link")) return;
-      // to be copied by hand
+      // The link is shown, to be copied by hand.
       [shown.value, shown.hidden] = [link, false];
       shown.focus();
       say("The browser lets nothing be copied here; the link is below its button");
     })}, "Copy link")), shown, said);
 }
 
-// The chart as a file that stands alone.
+// Returns the chart as a file that stands alone.
 function svgText(figure) {
   const copied = figure.cloneNode(true), [, , width, height] = copied.getAttribute("viewBox").split(" ");
   for (const [name, value] of Object.entries({xmlns: "http://www.w3.org/2000/svg", width, height, "font-family": "system-ui, sans-serif", "font-size": 11}))
@@ -121,7 +122,7 @@ function svgText(figure) {
   return new XMLSerializer().serializeToString(copied);
 }
 
-// What draw(pen) draws on the panel's ground.
+// Returns a picture that draw(pen) draws on the panel's ground.
 function pngOf(width, height, draw) {
   const canvas = make("canvas", {width, height}), pen = canvas.getContext("2d");
   pen.fillStyle = css("--panel");
@@ -130,7 +131,7 @@ function pngOf(width, height, draw) {
   return new Promise((done) => canvas.toBlob(done, "image/png"));
 }
 
-// What stands over theta_h and theta_d, side by side, each cell a square of pixels.
+// Returns the pictures over theta_h and theta_d side by side, each cell a square of pixels.
 function halfDiffPng() {
   const shown = canvasesOf("#half-diff"), kCell = 4, kGap = 16, kText = 24, side = kCell * shown[0].width;
   return pngOf(shown.length * (side + kGap) - kGap, side + kText, (pen) => {
@@ -142,7 +143,7 @@ function halfDiffPng() {
   });
 }
 
-// The lobe as it is turned.
+// Returns the lobe's picture as it is turned.
 function lobePng() {
   const [shown] = canvasesOf("#lobe");
   return pngOf(shown.width, shown.height, (pen) => pen.drawImage(shown, 0, 0));

@@ -29,5 +29,5 @@ export const parts = [
   [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1.425, 0, 0, 1.425, 0.798, 0, 0.798, 1.425, 0, 0, 1.425, 0, 1.5, 0, 0.075, 1.5,
    0.84, 0.075, 0.84, 1.5, 0.075, 0, 1.5, 0.075, 1.5, 0, 0.15, 1.5, 0.84, 0.15, 0.84, 1.5, 0.15, 0, 1.5, 0.15],
 ];
-// Whether a part is turned about z and made of four, or mirrored and made of two.
+// True for a part that is turned about z and made of four, false for one that is mirrored and made of two.
 export const turned = [true, true, true, false, false, false, false, true, true, true];

@@ -1,4 +1,4 @@
-// The lit object: two materials beside each other, summed over frames until the light from all around is smooth.
+// The lit object: two materials beside each other, summed over frames until the environment lighting is smooth.
 import {exactLight, kDirections, kPasses} from "./exact.js";
 import {fidelity} from "./fidelity.js";
 import {bind, mesh, program, target, texture} from "./gl.js";
@@ -12,8 +12,8 @@ const kEnough = 512, kLongFrame = 40;  // samples a pixel; milliseconds after wh
 const kMaxPixels = 1.1e6;
 const kPortraitPasses = 16, kPortraitSamples = 8;  // of a thumbnail
 const kExposurePixels = 4e4, kExposureSamples = 8;
-const kInks = [[0.03, 0.1, 0.16], [0.35, 0.85, 1]];  // of tangents, the wide and the narrow stroke
-const kStrokes = {sphere: 60, knot: 79, teapot: 24, plane: 7};  // of so many vertices one has one: about the golden ratio of a row further on
+const kInks = [[0.03, 0.1, 0.16], [0.35, 0.85, 1]];  // of tangents: the wide stroke, the narrow stroke
+const kStrokes = {sphere: 60, knot: 79, teapot: 24, plane: 7};  // vertices for each stroke: about the golden ratio of a row further on
 const makers = {sphere, knot, teapot, plane};
 
 export class View {
@@ -31,18 +31,18 @@ export class View {
     this.programs = new Map();
     this.meshes = new Map();
     this.sides = [null, null];
-    this.off = [null, null];  // of each side, what its sum is off: {passes, targets}
-    this.chores = [];         // what is drawn between frames, in steps
-    this.drawn = [];          // of the sides, those in the last frame
+    this.off = [null, null];  // of each side, the error of its sum: {passes, targets}
+    this.chores = [];         // drawn between frames, in steps
+    this.drawn = [];          // the sides in the last frame
     this.small = null;        // a small picture that is not on the screen yet
     this.samplesAFrame = 4;
     this.resolution = 1;  // 0.5 where drawing is slow
-    this.whole = false;   // while it must not be lowered
+    this.whole = false;   // true while the resolution must stay
     const gl = this.gl;
     this.sum = program(gl, screenVertex, sumFragment);
     this.picture = program(gl, screenVertex, pictureFragment);
     this.lines = program(gl, objectVertex, lineFragment);
-    this.part = this.takeOff = null;  // made when they are needed
+    this.part = this.takeOff = null;  // made at their first use
     this.black = texture(gl, {width: 1, height: 1, internal: gl.RGBA8, format: gl.RGBA, type: gl.UNSIGNED_BYTE, data: new Uint8Array(4)});
     this.sky = this.black;
     this.empty = gl.createVertexArray();
@@ -61,7 +61,7 @@ export class View {
     if (onlyPicture) this.ask();
     else this.restart();
   }
-  // Entries or null.
+  // left and right are entries or null.
   show(left, right) {
     this.sides = [left, right];
     for (const entry of this.sides) if (entry) this.load(entry);
@@ -77,7 +77,7 @@ export class View {
   load(entry) {
     if (!this.forms.has(entry.id)) this.refresh(entry);
   }
-  // Takes the entry's material anew; until it is there the old one is drawn.
+  // Loads the entry's material anew. The old one is drawn until then.
   async refresh(entry) {
     const {material} = entry, known = this.forms.get(entry.id);
     this.forms.set(entry.id, known ?? {});
@@ -89,7 +89,7 @@ export class View {
         this.forget(entry);
         this.forms.set(entry.id, form);
         if (this.sides.includes(entry)) this.restart();
-        // once it is seen
+        // The measurement of its error waits until the entry is drawn.
         this.chores.push(this.judging(entry, form, alive));
         this.onready(entry, first);
         this.tick();
@@ -101,7 +101,7 @@ export class View {
   *judging(entry, form, alive) {
     if (alive()) this.judge(entry, form, alive).catch((error) => alive() && this.onerror(error));
   }
-  // Tells how the entry is drawn, and how far that is from what was measured.
+  // Reports how the entry is drawn, and the difference from the measured values.
   async judge(entry, form, alive) {
     const current = () => alive() && this.forms.get(entry.id) === form;
     const decibels = form.how === "shader" ? undefined : await fidelity(this.gl, form, entry.material, current);
@@ -111,11 +111,11 @@ export class View {
     const form = entry && this.forms.get(entry.id);
     return form?.glsl ? form : null;
   }
-  // Pixels a side.
+  // Returns the largest picture's pixels a side.
   get largestPicture() {
     return this.gl.getParameter(this.gl.MAX_TEXTURE_SIZE);
   }
-  // rgb floats, `rows` from the top, of all directions.
+  // Takes rgb floats of all directions, rows from the top.
   setPicture(width, height, data) {
     const gl = this.gl;
     if (this.sky !== this.black) gl.deleteTexture(this.sky.handle);
@@ -136,7 +136,7 @@ export class View {
       if (this.sides[side]) this.onexact(this.sides[side], 0);
     });
   }
-  // A picture is wanted; and a look at whether the last one is there.
+  // Requests a picture, and a check that the last one is done.
   ask() {
     this.stale = true;
     this.tick();
@@ -173,13 +173,13 @@ export class View {
   frame(time) {
     const gl = this.gl;
     if (gl.isContextLost()) return;
-    // the last frame is still being drawn
+    // The last frame is still being drawn.
     if (this.fence && gl.clientWaitSync(this.fence, 0, 0) === gl.TIMEOUT_EXPIRED) {
       this.tick();
       return;
     }
     if (this.fence) this.finished(time - this.began);
-    // thumbnails take turns with frames
+    // Thumbnails take turns with frames.
     if (this.chores.length && !this.stale && !this.choreWas) {
       if (this.chores[0].next().done) this.chores.shift();
       this.choreWas = true;
@@ -204,7 +204,7 @@ export class View {
     this.onframe(this);
     this.tick();
   }
-  // The last frame is on the screen. A frame after a pause tells nothing of the pace.
+  // The last frame is on the screen. A frame after a pause says nothing about the pace.
   finished(took) {
     this.gl.deleteSync(this.fence);
     this.fence = null;
@@ -212,7 +212,7 @@ export class View {
     if (this.settled) this.rest();
     else this.measure(took);
   }
-  // As many samples a frame, and at last pixels, as the pace allows.
+  // Adapts the samples of a frame, and at last the pixels, to the pace.
   measure(took) {
     this.pace = this.pace ? 0.8 * this.pace + 0.2 * took : took;
     if (took > kLongFrame && this.samplesAFrame > 2) this.samplesAFrame /= 2;
@@ -220,7 +220,7 @@ export class View {
     else if (took < kLongFrame / 2) this.samplesAFrame = Math.min(this.samplesAFrame * 2, 32);
   }
 
-  // One more frame of each material into its sum.
+  // Adds a frame of each material to its sum.
   accumulate() {
     const [frame, ...sums] = this.targets, count = this.samplesAFrame;
     const jitter = jitterOf(this.frames);
@@ -240,7 +240,7 @@ export class View {
     this.taken += this.settings.around === "none" ? 1 : count;
   }
 
-  // While the view rests, what is drawn through a table is computed.
+  // While the view rests, the library computes the light that was drawn through a table.
   async rest() {
     if (this.rests) return;
     const rests = (this.rests = {}), materials = this.sides.map((entry) => entry?.material);
@@ -329,7 +329,7 @@ export class View {
     this.setLight(form, made);
     gl.uniform1i(made.at("samples"), count);
     gl.uniform1i(made.at("first_sample"), first);
-    // depths first: what is hidden costs nothing then
+    // Depths are drawn first, so that hidden parts cost nothing.
     gl.colorMask(false, false, false, false);
     gl.useProgram(this.lines.handle);
     this.place(this.lines, goal, jitter);
@@ -341,7 +341,7 @@ export class View {
     this.drawMesh(shape);
   }
 
-  // The form's textures, lights and what is around.
+  // Sets the form's textures, the lights and the environment.
   setLight(form, {at}) {
     const gl = this.gl, {lights, around} = this.settings;
     form.textures.forEach((map, unit) => {
@@ -360,7 +360,7 @@ export class View {
     });
     gl.uniform3fv(at("lights"), places);
     gl.uniform3fv(at("colors"), colors);
-    // both sides draw the same directions, so that what they differ by is no noise
+    // Both sides draw the same directions, so that their difference has no noise.
     gl.uniform2f(at("alpha"), ...(this.formOf(this.sides[0]) ?? form).alpha);
   }
 
@@ -371,7 +371,7 @@ export class View {
     this.gl.drawElements(this.gl.TRIANGLES, count, this.gl.UNSIGNED_INT, 0);
   }
 
-  // The sums as a picture, or a small one of the left object.
+  // Draws the sums as a picture, or a small picture of the left object.
   compose(small) {
     const gl = this.gl, {exposure, curve, shown, divider, factor, tangents} = this.settings, {width, height} = this.canvas;
     const sums = [0, 1].map((side) => this.targets[1 + 2 * side + (this.frames % 2)].color);
@@ -392,7 +392,7 @@ export class View {
     if (tangents) this.drawTangents();
   }
 
-  // At every so many vertices a stroke along the tangent on a darker one, hidden by the object's depth.
+  // Draws a stroke along the tangent, on a darker one, at every few vertices. The object's depth hides it.
   drawTangents() {
     const gl = this.gl, {shape} = this.settings, name = `${shape} tangents`;
     if (!this.meshes.has(name)) {
@@ -415,8 +415,8 @@ export class View {
     });
   }
 
-  // The exposure, in stops, that takes all but the brightest 3 % of the left object to white, by a small picture of it. That
-  // is seen before larger ones where nothing has been seen yet.
+  // Returns the exposure, in stops, that takes all but the brightest 3 % of the left object to white. A small picture
+  // gives it. Where nothing has been seen yet, this picture is shown before larger ones.
   autoExposure() {
     const gl = this.gl, form = this.formOf(this.sides[0]), {clientWidth, clientHeight} = this.canvas;
     if (!form || !clientWidth || !clientHeight) return null;
@@ -433,7 +433,7 @@ export class View {
     return exposureOf(pixels);
   }
 
-  // A small picture of a sphere under the studio's light, drawn between frames.
+  // Draws a small picture of a sphere under the studio's light, between frames.
   thumbnail(entry, size, told) {
     this.chores.push(this.portrait(entry, size, told));
     this.tick();
@@ -441,7 +441,7 @@ export class View {
   *portrait(entry, size, told) {
     const gl = this.gl, form = this.formOf(entry), studio = {shape: "sphere", around: "studio", yaw: 0, pitch: 0, lights: []};
     const sums = new Float32Array(4 * size * size), pixels = new Float32Array(4 * size * size);
-    // seen at once, and again each time that twice as much of it is there
+    // The picture is shown at once, and again each time that twice as many passes are done.
     for (let pass = 0; pass < kPortraitPasses; ++pass) {
       if (this.formOf(entry) !== form) return;
       const {settings, sides} = this, goal = target(gl, size, size, true);
@@ -457,7 +457,7 @@ export class View {
     }
   }
 
-  // What is seen, of all pixels of the screen: where drawing is slow they are drawn for it.
+  // Returns the present picture with all pixels of the screen. Where drawing is slow, it is drawn again for this.
   async png(signal) {
     const {resolution} = this;
     if (resolution < 1) await this.drawWhole(signal);
@@ -478,13 +478,13 @@ export class View {
       throw signal.reason;
     }
   }
-  // Whether the library computed what is drawn through tables.
+  // Returns true if the library computed the light that is drawn through tables.
   get computed() {
     return this.sides.every((entry, side) => !this.isSeen(side) || this.formOf(entry)?.how !== "table" || this.off[side]?.passes === kPasses);
   }
 }
 
-// Strokes along the tangents of every so many vertices: first the wide ones, then as many narrow ones.
+// Returns strokes along the tangents of every few vertices: first the wide ones, then as many narrow ones.
 function strokes(vertices, every) {
   const made = [], indices = [];
   for (const [length, width] of [[0.041, 0.011], [0.035, 0.005]])
@@ -501,7 +501,7 @@ function strokes(vertices, every) {
 const fract = (x) => x - Math.floor(x);
 const jitterOf = (k) => [fract(k * 0.7548776662 + 0.5) - 0.5, fract(k * 0.569840291 + 0.5) - 0.5];
 
-// A square picture, its rows from below, as one for a canvas; its exposure is its own.
+// Returns a square picture for a canvas, from rows that start below, with an exposure of its own.
 function thumbnailOf(sums, size) {
   const factor = 2 ** exposureOf(sums), image = new ImageData(size, size);
   for (let y = 0; y < size; ++y)

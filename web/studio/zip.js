@@ -1,8 +1,8 @@
-// Several files as one archive [PKWARE APPNOTE 6.3.10].
+// Packs several files into one archive [PKWARE APPNOTE 6.3.10].
 
 const kLocal = 0x04034b50, kEntry = 0x02014b50, kEnd = 0x06054b50, kVersion = 20, kUtf8 = 0x800, kDeflated = 8, kDate = 0x21;
 
-// Numbers of two and four bytes, lowest first: [[bytes, value], ...].
+// Writes numbers of two and four bytes, lowest first: [[bytes, value], ...].
 function words(...list) {
   const data = new DataView(new ArrayBuffer(list.reduce((sum, [size]) => sum + size, 0)));
   let at = 0;
@@ -14,14 +14,15 @@ function words(...list) {
   return new Uint8Array(data.buffer);
 }
 
-// A file deflated, with its checksum: what gzip [RFC 1952] has between its head of 10 bytes and its tail of 8, and that tail.
+// Returns a deflated file with its checksum and size. gzip [RFC 1952] has the data between a head of 10 bytes and a
+// tail of 8, which has the checksum and size.
 async function packed(bytes) {
   const stream = new Blob([bytes]).stream().pipeThrough(new CompressionStream("gzip")), all = new Uint8Array(await new Response(stream).arrayBuffer());
   const tail = new DataView(all.buffer, all.length - 8);
   return {data: all.subarray(10, -8), checksum: tail.getUint32(0, true), size: tail.getUint32(4, true)};
 }
 
-// The archive's bytes, of files {name, bytes}.
+// Returns the archive's bytes, from files {name, bytes}.
 export async function zip(files) {
   const parts = [], entries = [];
   let at = 0;
