@@ -7,7 +7,7 @@
     print(burnish.error_figures(paint, model).psnr)
     burnish.write_model("paint.exr", model)
 
-    burnish.Source.from_samples(wi, wo, values)    # what was measured, as arrays or lists
+    burnish.Source.from_samples(wi, wo, values)    # measured values, as arrays or lists
     burnish.Source.from_function(f)                # f(wi, wo) on arrays
 
 Directions are in the local frame of the surface: normal (0, 0, 1), tangent (1, 0, 0); wi points to the light,

@@ -1,4 +1,4 @@
-"""What is wrong with a call that fits no signature, in one line."""
+"""Explains in one line why a call fits no signature."""
 
 import ast
 import numbers
@@ -19,10 +19,10 @@ _KINDS = {
 
 
 class _Signature:
-    """One way to call a function, read from the line that its documentation shows."""
+    """One signature of a function, read from the line in its documentation."""
 
     def __init__(self, line):
-        # defaults stand there by number
+        # The line has numbers in place of defaults.
         function = ast.parse(re.sub(r"\\\d+", "None", line) + ": ...").body[0]
         given = function.args
         self.name = function.name
@@ -38,14 +38,14 @@ class _Signature:
         return [one.arg for one in self.positional + self.keywords if one.arg != "self"]
 
     def problem(self, positional, keywords):
-        """(how far the call got, what is wrong), or None."""
+        """Returns (the number of arguments that fit, the mistake), or None."""
         if len(positional) > len(self.positional) and not self.any_number:
             is_method = bool(self.positional) and self.positional[0].arg == "self"
             most, found = len(self.positional) - is_method, len(positional) - is_method
             return 0, f"expected at most {most} arguments without a name, found {found}"
         for name in keywords:
             if name not in self.names() and not self.any_keyword:
-                return -1, _burnish._expected_one_of(self.names(), name)  # another way to call it knows the name
+                return -1, _burnish._expected_one_of(self.names(), name)  # another signature may know the name
         by_name = {one.arg: one for one in self.positional + self.keywords}
         given = {one.arg: value for one, value in zip(self.positional, positional)}
         for name in keywords:
@@ -72,7 +72,7 @@ def _found(value):
 
 
 def _fits(value, annotation):
-    """Whether the value may be of that type; yes of types that are not looked into."""
+    """Returns True if the value may be of that type, and for types that are not examined."""
     if isinstance(annotation, ast.BinOp):
         return _fits(value, annotation.left) or _fits(value, annotation.right)
     if isinstance(annotation, ast.Subscript) and _text(annotation.value) in (
@@ -89,7 +89,7 @@ def _fits(value, annotation):
 
 
 def explain(function, positional, keywords):
-    """The line, of a function of the extension and what it was called with."""
+    """Returns the line, given a function of the extension and the arguments of the call."""
     signatures = [_Signature(entry[0]) for entry in function.__nb_signature__]
     name = signatures[0].name
     if name == "__init__":
@@ -104,6 +104,6 @@ def explain(function, positional, keywords):
     is_method = signatures[0].positional and signatures[0].positional[0].arg == "self"
     found = [type(value).__name__ for value in positional[is_method:]]
     found += [f"{word}={type(value).__name__}" for word, value in keywords.items()]
-    # the last way to call it is the widest
+    # The last signature is the widest.
     expected = re.sub(r" = \\\d+", "", function.__nb_signature__[-1][0])[len("def ") :]
     return f"{name}: expected {expected.replace('self, ', '')}, found ({', '.join(found)})"

@@ -7,16 +7,16 @@
     bsdf = mi.load_dict({"type": "burnish", "filename": "paint.exr"})
     coat = mi.load_dict({"type": "burnish", "filename": "openpbr:coat_weight=1"})
 
-OpenPBR is a spec as above or what `burnish fit --to openpbr` writes, and its formulas are OpenPBR's own.
+OpenPBR is a spec as above, or a file that `burnish fit --to openpbr` writes. Its formulas are OpenPBR's own.
 
-In the JIT variants (llvm_*_rgb, cuda_*_rgb) evaluation, sampling and densities are compiled with the scene, and the
-logarithms of the tables are differentiable parameters: `p.log_values` of table p, a tensor of the shape of
-its values. scalar_rgb calls the C++ library, one direction at a time.
+In the JIT variants (llvm_*_rgb, cuda_*_rgb) evaluation, sampling and densities are compiled with the scene. The
+logarithms of the tables are differentiable parameters: `p.log_values` of table p is a tensor of the shape of its
+values. scalar_rgb calls the C++ library, one direction at a time.
 
-Mitsuba's si.wi points to the viewer: it is the library's wo, and Mitsuba's wo its wi. Only models that are not
-reciprocal tell the difference. Mitsuba's own `measured` takes si.wi for the first direction of a file, which is our wi,
-and a model of that file shall look like it: so the directions are exchanged when the value is looked up. With
-`"exchange": False` they are not, and the value is that of light from Mitsuba's wo. OpenPBR's are not unless told to.
+Mitsuba's si.wi points to the viewer: it is the library's wo, and Mitsuba's wo is the library's wi. The difference shows
+only in models that are not reciprocal. Mitsuba's own `measured` takes si.wi for the first direction of a file, which
+is our wi. A model of that file must look like it, so the directions are exchanged when the value is looked up. With
+`"exchange": False` they are not exchanged, and the value is that of light from Mitsuba's wo. This is OpenPBR's default.
 """
 
 import drjit as dr
@@ -28,7 +28,7 @@ from .mitsuba_spatial import make_bsdf_class as _make_spatial_class
 
 
 def register():
-    """Makes `burnish` and `burnish_spatial` known to the variant that is set. Call it again after setting another."""
+    """Registers `burnish` and `burnish_spatial` with the present variant. Call it again after setting another one."""
     if not mi.is_rgb:
         raise Error(f"mitsuba: expected an rgb variant, found '{mi.variant()}'")
     mi.register_bsdf("burnish", _make_bsdf_class())
@@ -36,7 +36,7 @@ def register():
 
 
 def _make_bsdf_class():
-    # mi.BSDF is another class in every variant
+    # mi.BSDF is a different class in every variant.
     class BurnishBsdf(mi.BSDF):
         def __init__(self, props):
             super().__init__(props)
@@ -113,7 +113,7 @@ def _opened(name):
     path = name if name.partition(":")[0] == "openpbr" else str(mi.file_resolver().resolve(name))
     source = open_source(path)
     if not isinstance(source, Model):
-        source._eval_graph()  # says what it expects
+        source._eval_graph()  # raises an Error that says what it expects
     elif source.lambda_nm or source.channels not in (1, 3):
         raise Error(f"{path}: expected a burnish model of 1 or 3 channels, found {source!r}")
     return source
@@ -131,14 +131,14 @@ class BrdfFunction:
         self.update()
 
     def update(self):
-        """Call after log_values changed."""
+        """Updates the tables. Call it after log_values changed."""
         self.values = {
             name: (self.tables[i].values.shape[-2], dr.exp(self.log_values[self.tables[i].name].array))
             for name, i in self.textures.items()
         }
 
     def current_model(self):
-        """The model with the tables as they are now, rounded to their formats; of factored BRDFs only."""
+        """Returns the model with its present tables, rounded to their formats. Requires a factored BRDF."""
         return self.model.with_log_tables([np.array(v, dtype=np.float64) for v in self.log_values.values()])
 
     def eval(self, wi, wo):
@@ -154,17 +154,17 @@ class CompiledSampler:
         self.edges = {name: mi.UInt32(graphs[name]) for name in ("row_edges", "cell_edges")}
 
     def sample_wi(self, wo, u):
-        """The direction to the light that u becomes, and its density, 1/sr."""
+        """Returns the direction to the light for the sample position u, and its density in 1/sr."""
         x, y, z, pdf = self.draw(wo_x=wo.x, wo_y=wo.y, wo_z=wo.z, u_x=u.x, u_y=u.y, **self.edges)
         return mi.Vector3f(x, y, z), pdf
 
     def pdf(self, wi, wo):
-        """The density of wi under sample_wi, 1/sr; zero below the horizon."""
+        """Returns the density of wi under sample_wi in 1/sr; zero below the horizon."""
         return self.density(wi_x=wi.x, wi_y=wi.y, wi_z=wi.z, wo_x=wo.x, wo_y=wo.y, wo_z=wo.z, **self.edges)[0]
 
 
 class Formula:
-    """One of the library's expression graphs, carried out by Dr.Jit."""
+    """One of the library's expression graphs, evaluated by Dr.Jit."""
 
     OPERATIONS = {
         "add": lambda a, b: a + b,
@@ -193,7 +193,7 @@ class Formula:
         self.nodes, self.outputs = graph
 
     def __call__(self, **inputs):
-        """The outputs. Inputs by their names; of an array of integers itself, of a texture width and texels."""
+        """Returns the outputs. `inputs` are numbers and integer arrays by name; a texture is (width, texels)."""
         values = []
         for operation, kind, constant, name, arguments in self.nodes:
             a = [values[i] for i in arguments]

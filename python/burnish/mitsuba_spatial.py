@@ -1,12 +1,12 @@
-"""The BSDF plugin `burnish_spatial` of Mitsuba 3: a surface from its .burnish file, over the meshes' texture coordinates.
+"""The BSDF plugin `burnish_spatial` of Mitsuba 3: a surface from its .burnish file, over meshes' texture coordinates.
 
     import burnish.mitsuba
     burnish.mitsuba.register()
     bsdf = mi.load_dict({"type": "burnish_spatial", "filename": "wall.burnish"})
 
-For the JIT variants. Weights and normals are looked up at si.uv (v upwards) with linear filters, lobes are evaluated by
-the library's formulas. Directions are drawn as for the mean of all texels. The surface's tangent is Mitsuba's, along
-dp_du. `exchange` is that of `burnish`.
+It needs a JIT variant. Weights and normals are looked up at si.uv (v upwards) with linear filters, and lobes are
+evaluated by the library's formulas. Directions are drawn as for the mean of all texels. The surface's tangent is
+Mitsuba's, along dp_du. `exchange` means the same as for `burnish`.
 """
 
 import drjit as dr
@@ -17,7 +17,7 @@ from . import Error, open_surface
 
 
 def make_bsdf_class(formula_type, sampler_type):
-    # mi.BSDF is another class in every variant
+    # mi.BSDF is a different class in every variant.
     class SpatialBsdf(mi.BSDF):
         def __init__(self, props):
             super().__init__(props)
@@ -39,13 +39,13 @@ def make_bsdf_class(formula_type, sampler_type):
             graph, textures = lobes._lobe_graph()
             self.lobes = formula_type(graph)
             tables = lobes.tables
-            # copies: Mitsuba keeps an array until the process ends, and a view its model
+            # The arrays are copies, since Mitsuba keeps them until the process ends, and a view would keep its model.
             self.values = {
                 name: (tables[i].values.shape[-2], mi.Float(tables[i].values.flatten())) for name, i in textures.items()
             }
 
         def _take_maps(self):
-            """All maps in one texture; the columns where each begins."""
+            """Puts all maps into one texture, and keeps the columns where they begin."""
             maps = list(self.surface.weights)
             self.widths = [m.shape[-1] for m in maps]
             self.vectors = {}
@@ -58,7 +58,7 @@ def make_bsdf_class(formula_type, sampler_type):
             self.maps = mi.Texture2f(mi.TensorXf(texels), wrap_mode=dr.WrapMode.Repeat)
 
         def _place(self, si, active):
-            """Weights, one a lobe, and tangent, bitangent and normal of the texel in the shading frame."""
+            """Returns the weights of the lobes, and the texel's tangent, bitangent and normal in the shading frame."""
             read = self.maps.eval(mi.Point2f(si.uv.x, 1 - si.uv.y), active)
             weights, first = [], 0
             for width in self.widths:
@@ -103,7 +103,7 @@ def make_bsdf_class(formula_type, sampler_type):
             drawn.sampled_type = mi.UInt32(int(self.m_flags))
             drawn.sampled_component = mi.UInt32(0)
             active &= (density > 0) & (drawn.wo.z > 0)
-            # at the edge of a cell the frames' rounding decides of which it is: as others will ask for it
+            # Evaluated anew: at the edge of a cell, rounding of the frames decides its cell, as in eval and pdf.
             value, drawn.pdf = self.eval_pdf(ctx, si, drawn.wo, active)
             active &= drawn.pdf > 0
             return drawn, dr.select(active, value / drawn.pdf, 0)
