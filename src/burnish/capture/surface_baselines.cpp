@@ -19,7 +19,8 @@ constexpr double kMinAlpha = 0.03, kMaxAlpha = 0.8, kDielectric = 0.04;
 constexpr double kGrey = 1 / 2.2, kLogFloor = 0.004;
 constexpr std::size_t kNeighbours = 3;
 
-/// A table over a polar angle, of the function of its cosine, its largest value 1; returns what it was divided by.
+/// Returns a table over a polar angle, filled with a function of its cosine. The largest value is 1; the second
+/// result is what the values were divided by.
 template <class Of>
 std::pair<Table, double> line(const char* name, Warp warp, const Of& of) {
   Table table{
@@ -31,14 +32,14 @@ std::pair<Table, double> line(const char* name, Warp warp, const Of& of) {
   return {std::move(table), most};
 }
 
-/// A diffuse lobe and one of GGX, each channel apart.
+/// A diffuse lobe and a GGX lobe for each channel.
 FactoredBrdf ggx_lobes(double alpha) {
   const double square = alpha * alpha;
   const auto [d, most_d] = line("d", {WarpKind::power, 0.5}, [&](double z) {
     const double base = z * z * (square - 1) + 1;
     return square / (kPi * base * base);
   });
-  // G1 / cos, halved twice in the denominator 4 cos cos
+  // g is G1 / (2 cos), so that the product of two is G1 G1 / (4 cos cos).
   const auto [g, most_g] =
       line("g", {}, [&](double z) { return 1 / (z + std::sqrt(square + (1 - square) * z * z)); });
   const auto [f, most_f] =
@@ -59,7 +60,7 @@ FactoredBrdf ggx_lobes(double alpha) {
   return FactoredBrdf(kCaptureChannels, {d, g, f}, std::move(lobes), TableFormat::single);
 }
 
-/// The comparison of one capture.
+/// Compares the methods on one capture.
 class Comparison {
  public:
   Comparison(Capture capture, const SurfaceFit& fit, const SurfaceFitOptions& options)
@@ -96,7 +97,7 @@ class Comparison {
     return -10 * std::log10(sum);
   }
 
-  /// Mean squares of the held-out pictures, each of the texels `fits` is chosen for.
+  /// PSNR from the mean squares of the held-out pictures, over the sampled texels.
   std::optional<double> score(const FactoredBrdf& lobes, const TexelFits& fits) const {
     const TexelSolver solver(lobes, capture_.form(), fit_.report.exposure);
     return psnr_of(solver.errors(samples_, fits));
@@ -109,7 +110,7 @@ class Comparison {
     return psnr(means);
   }
 
-  /// Some of the sampled texels.
+  /// Returns some of the sampled texels.
   TexelSamples only(const std::vector<std::size_t>& texels) const {
     TexelSamples part{.texels = {}, .pictures = samples_.pictures, .values = {}, .states = {}};
     for (const std::size_t t : texels) part.texels.push_back(samples_.texels[t]);
@@ -126,7 +127,7 @@ class Comparison {
     return part;
   }
 
-  /// Each texel by the one of these models that leaves the least error in the fitted pictures.
+  /// Scores each texel by the model that leaves the least error in the fitted pictures.
   std::optional<double> best_of(const std::vector<FactoredBrdf>& models) const {
     std::vector<TexelFits> fits;
     for (const FactoredBrdf& model : models)
@@ -174,7 +175,7 @@ class Comparison {
     return std::log(std::max(x, 0.0) + kLogFloor);
   }
 
-  /// None where texels have no pictures in common.
+  /// PSNR of the principal components; none if texels have no pictures in common.
   std::optional<double> pca(std::size_t components) const {
     if (capture_.form().own_directions) return std::nullopt;
     const auto& pictures = capture_.form().pictures;
@@ -190,7 +191,7 @@ class Comparison {
     return psnr(means);
   }
 
-  /// Logarithms of the fitted pictures, a column a texel, as so many components and the mean have them.
+  /// Logarithms of the fitted pictures, rebuilt from the mean and that many components. Each column is a texel.
   Eigen::MatrixXd principal_logs(const std::vector<std::size_t>& fitted, std::size_t components) const {
     const auto rows = static_cast<Eigen::Index>(kCaptureChannels * fitted.size()),
                columns = static_cast<Eigen::Index>(samples_.size());
@@ -209,7 +210,7 @@ class Comparison {
     return modelled;
   }
 
-  /// A fitted picture, by its place among these, and how much it counts.
+  /// A fitted picture, by its place among the fitted ones, and its share of the mean.
   struct Neighbour {
     std::size_t place;
     double share;
@@ -234,7 +235,8 @@ class Comparison {
     return nearest;
   }
 
-  /// Mean square of what picture `p` shows less the mean of its neighbours' logarithms; none where it is missing.
+  /// The mean square error of picture `p`, as it is seen, against the mean of its neighbours' logarithms. None if all
+  /// of its pixels are missing.
   std::optional<double> mean_square(std::size_t p, const std::vector<Neighbour>& neighbours,
                                     const Eigen::MatrixXd& modelled) const {
     const auto seen_as = [](double x) { return std::pow(std::clamp(x, 0.0, 1.0), kGrey); };

@@ -25,7 +25,7 @@ namespace burnish {
 
 namespace {
 
-/// What a checkpoint has: nothing, a round of lobes, or lobes and rows.
+/// The content of a checkpoint: nothing, a round of lobes, or lobes and rows.
 using Resumed = std::variant<std::monostate, LobesCheckpoint, FitCheckpoint>;
 
 Resumed resumed(const SurfaceTask& task, int width) {
@@ -45,7 +45,7 @@ Resumed resumed(const SurfaceTask& task, int width) {
   return rows;
 }
 
-/// Lobes that were just found, before the first row.
+/// A checkpoint of lobes that were just found, before the first row.
 FitCheckpoint without_rows(SurfaceLobes found, std::uint64_t key, std::vector<Capture::LeftOut> damaged) {
   FitCheckpoint done{.key = key,
                      .damaged = std::move(damaged),
@@ -77,7 +77,7 @@ std::size_t lights_and_views(const CaptureForm& form) {
   return static_cast<std::size_t>(std::ranges::unique(pairs).begin() - pairs.begin());
 }
 
-/// The surface of all rows.
+/// The surface made of all rows.
 SpatialBrdf surface_of(const FitCheckpoint& done, const CaptureForm& form, bool widened) {
   SurfaceMaps maps;
   for (std::size_t j = 0; j < done.scales.size(); ++j)
@@ -90,7 +90,7 @@ SpatialBrdf surface_of(const FitCheckpoint& done, const CaptureForm& form, bool 
   return widened ? with_widened_lobes(brdf) : std::move(brdf);
 }
 
-/// All of the report but times and what was resumed.
+/// The whole report except times and resumed parts.
 SurfaceReport report_of(const FitCheckpoint& done, const SpatialBrdf& surface, const Capture& capture,
                         NormalsFrom normals) {
   const CaptureForm& form = capture.form();
@@ -125,7 +125,7 @@ SurfaceFit fit_surface(Capture capture, const SurfaceFitOptions& options) {
   const std::size_t left_out_at_first = capture.left_out().size();
   const SurfaceTask task = task_of(capture, options);
 
-  // Where to begin: at what a checkpoint has, which the other ranks are told.
+  // The fit begins at the state of the checkpoint, which the other ranks receive.
   Resumed resume = resumed(task, capture.form().width);
   FitStart start;
   int resumed_rounds = 0, resumed_rows = 0;
@@ -139,7 +139,7 @@ SurfaceFit fit_surface(Capture capture, const SurfaceFitOptions& options) {
   }
   if (task.ranks() > 1) options.crew->broadcast(format_start(start));
 
-  // The lobes, found or resumed, which the other ranks have as the checkpoint has them.
+  // The lobes are found or resumed. The other ranks receive them as a checkpoint.
   FitCheckpoint lobes;
   if (start.step == FitStep::weights) {
     lobes = std::get<FitCheckpoint>(std::move(resume));
@@ -150,7 +150,7 @@ SurfaceFit fit_surface(Capture capture, const SurfaceFitOptions& options) {
   }
   if (task.ranks() > 1) options.crew->broadcast(format_checkpoint(lobes));
 
-  // The weights of all rows, and what both come to.
+  // The weights of all rows follow, then the surface and its report.
   const SurfaceWeights weights = find_weights(capture, task, std::move(lobes));
   SpatialBrdf surface = surface_of(weights.done, capture.form(), options.widened);
   SurfaceReport report = report_of(weights.done, surface, capture, task.normals);
@@ -158,7 +158,7 @@ SurfaceFit fit_surface(Capture capture, const SurfaceFitOptions& options) {
   report.resumed_rounds = resumed_rounds;
   report.resumed_rows = resumed_rows;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  std::string notes = to_text(nlohmann::json(json_of(report)), -1);  // as a file's reader orders it
+  std::string notes = to_text(nlohmann::json(json_of(report)), -1);  // in the order of a file's reader
   return {.surface = {.brdf = std::move(surface), .notes = std::move(notes)}, .report = std::move(report)};
 }
 

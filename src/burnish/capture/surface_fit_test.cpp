@@ -79,7 +79,7 @@ TEST(SurfaceFit, TakesTheLobesOfABook) {
   EXPECT_EQ(second.surface.brdf.maps(), first.surface.brdf.maps());
 }
 
-// The same bytes whatever the number of threads and the size of tiles.
+// The result has the same bytes for any number of threads and any size of tiles.
 TEST(SurfaceFit, GivesTheSameBytesForAnyThreadsAndTiles) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const SmallCapture capture("threads");
@@ -90,7 +90,7 @@ TEST(SurfaceFit, GivesTheSameBytesForAnyThreadsAndTiles) {
   EXPECT_EQ(format_surface(capture.fit(options).surface), all);
 }
 
-// Of many sampled texels the first rounds see a part.
+// The first rounds see only a part of many sampled texels.
 TEST(SurfaceFit, GivesTheSameBytesForAnyThreadsOfManyTexels) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const TemporaryFolder folder("surface_fit_many");
@@ -103,7 +103,7 @@ TEST(SurfaceFit, GivesTheSameBytesForAnyThreadsOfManyTexels) {
   EXPECT_EQ(format_surface(fit_surface(Capture(folder.path), options).surface), format_surface(all.surface));
 }
 
-// Stopped anywhere, the fit goes on from its checkpoint and ends in the same bytes.
+// A fit that stops anywhere resumes from its checkpoint and ends in the same bytes.
 TEST(SurfaceFit, GoesOnFromACheckpoint) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const SmallCapture capture("resume");
@@ -123,7 +123,7 @@ TEST(SurfaceFit, GoesOnFromACheckpoint) {
     EXPECT_GT(resumed.report.resumed_rows, 0);
     EXPECT_EQ(format_surface(resumed.surface), whole) << where;
   }
-  // of other options or pictures it is refused, and so is a damaged one
+  // A checkpoint of other options or pictures is refused, and so is a damaged one.
   options.seed = 2;
   EXPECT_THROW(capture.fit(options), Error);
   options.seed = 1;
@@ -134,7 +134,7 @@ TEST(SurfaceFit, GoesOnFromACheckpoint) {
   EXPECT_THROW(capture.fit(options), Error);
 }
 
-// Rounds of lobes too: the first, of a part of the texels, and later ones.
+// A fit also resumes from rounds of lobes: the first, on a part of the texels, and later ones.
 TEST(SurfaceFit, GoesOnFromARoundOfLobes) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const TemporaryFolder folder("surface_fit_rounds");
@@ -165,7 +165,7 @@ TEST(SurfaceFit, IsTheSameForAnyNumberOfRanks) {
   options.rounds = 2;
   std::string alone = format_surface(folder.fit(options).surface);
   for (const int ranks : {2, 3}) {
-    if (ranks == 3) {  // and normals that are found
+    if (ranks == 3) {  // and estimated normals
       options.normals = NormalsFrom::estimate;
       alone = format_surface(folder.fit(options).surface);
     }
@@ -197,7 +197,7 @@ TEST(SurfaceFit, SaysWhichPicturesItLeftOut) {
   EXPECT_EQ(fit.report.pictures, 23u);
 }
 
-// Masked in all pictures that are fitted; also where the fit was stopped between.
+// Texels are counted that are masked in all fitted pictures, also if the fit was resumed.
 TEST(SurfaceFit, CountsTexelsWithoutData) {
   const TemporaryFolder folder("surface_fit_without_data");
   CaptureForm form = small_capture(folder.path, 16, 6, R"("held_out":6)");
@@ -223,7 +223,7 @@ TEST(SurfaceFit, CountsTexelsWithoutData) {
   EXPECT_THAT(report_json(report), testing::HasSubstr(R"("texels_without_data":3)"));
 }
 
-// The picture that was taken and the model's are alike where they stand side by side.
+// The captured picture and the model's picture, side by side, are alike.
 TEST(SurfacePicture, ShowsWhatWasTakenBesideTheModel) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const SmallCapture folder("picture");
@@ -239,7 +239,7 @@ TEST(SurfacePicture, ShowsWhatWasTakenBesideTheModel) {
   EXPECT_THROW(surface_picture(capture, fit.surface.brdf, 24, 1), Error);
 }
 
-// All methods are scored; mixing lobes leads.
+// All methods are scored, and mixed lobes score best.
 TEST(SurfaceBaselines, AreScoredBesideTheFit) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const SmallCapture capture("baselines");

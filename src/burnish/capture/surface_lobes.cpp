@@ -24,16 +24,16 @@ namespace burnish {
 
 namespace {
 
-// What of a capture is kept to fit lobes to.
+// The number of values of a capture that are kept to fit lobes to.
 constexpr std::size_t kSampleValues = 6'000'000;
 // Pixels that lobes are refined on: half of them count as pixels, half as pairs.
 constexpr std::size_t kTrainingPixels = 150'000, kStartPixels = 15'000;
-constexpr std::uint64_t kFirstRoundStream = 100;  // of training pixels; those before are of lobes' starts
-// As of models with volumes (fitting/fit.cpp).
+constexpr std::uint64_t kFirstRoundStream = 100;  // of training pixels; smaller ones are of starts
+// The same shares as for models with volumes (fitting/fit.cpp).
 constexpr ErrorTerms kShares{.pictures = 3, .dimmed = 0.3, .relative = 0.4, .log_cos = 0.4};
-// Volumes are smooth, for the directions that no picture has; lines hold what is narrow.
+// Volumes are smooth, so that they are sound at directions that no picture has; lines hold what is narrow.
 constexpr double kSmooth = 1e-6, kLineSmoothShare = 1e-3;
-// The way there is made at few nodes, on few texels and pixels.
+// The first rounds use few nodes, few texels and few pixels.
 constexpr double kCoarseShare = 1.0 / 6;
 constexpr std::size_t kCoarsePixels = 24'000;
 constexpr std::size_t kCoarseTexels = 1500;
@@ -44,10 +44,10 @@ const HomomorphicOptions kStart{
 constexpr double kHalfNodes = 30, kDifferenceNodes = 20, kAzimuthNodes = 6;
 constexpr double kLineShare = 0.07;
 constexpr std::size_t kTexelBytes = 4;  // rgb9e5
-constexpr double kCodeRoom = 1.25;      // of weights' scale over what nearly all texels have
+constexpr double kCodeRoom = 1.25;      // of a weight's scale over nearly all texels' values
 constexpr double kNearlyAll = 0.999;
 
-/// K lobes z(theta_h) g(theta_h,theta_d,phi_d) of so many bytes each.
+/// The model of K lobes z(theta_h) g(theta_h,theta_d,phi_d), each of that many bytes.
 ModelSpec spec_of_lobes(std::size_t lobes, std::size_t bytes) {
   const double texels = static_cast<double>(bytes / kTexelBytes) - 4;
   const int line = std::clamp(static_cast<int>(kLineShare * texels), 8, 256);
@@ -71,15 +71,15 @@ ModelSpec spec_of_lobes(std::size_t lobes, std::size_t bytes) {
   return spec;
 }
 
-/// What all steps of the lobes see; none of it changes once texels are sampled.
+/// The values that all steps of the lobes see. None of them changes once texels are sampled.
 struct LobeSetting {
   const SurfaceTask& task;
   const CaptureForm& form;
   double exposure;
-  bool clipped;  // whether any fitted pixel is
+  bool clipped;  // true if any fitted pixel is
 
   bool is_coarse(int round) const noexcept { return round + kFullRounds < task.rounds; }
-  /// Of each lobe's tables in a round.
+  /// The bytes of each lobe's tables in a round.
   std::size_t bytes_in(int round) const noexcept {
     const std::size_t all = task.options.lobe_bytes;
     const auto few = static_cast<std::size_t>(kCoarseShare * static_cast<double>(all));
@@ -87,14 +87,14 @@ struct LobeSetting {
   }
 };
 
-/// Lobes after so many rounds; after 0 as they start.
+/// Lobes after a number of rounds; after 0 rounds as they start.
 struct LobesInRounds {
   int rounds = 0;
   LogModel model;
-  FactoredBrdf brdf;  // the model's, after the last round rounded to what is stored
+  FactoredBrdf brdf;  // of the model; after the last round rounded to what is stored
 };
 
-/// Some texels, and what they were found to be under the lobes as they last were: normals alone before the first lobes.
+/// Some texels, and the values found for them under the latest lobes: only normals before the first lobes.
 struct FittedTexels {
   TexelSamples samples;
   TexelFits fits;
@@ -104,7 +104,7 @@ struct FittedTexels {
   throw Error::in_file(task.options.checkpoint.string(), "lobes and texels of this capture", "others");
 }
 
-/// Normals that texels begin with.
+/// The normals that texels begin with.
 std::vector<float> starting_normals(const LobeSetting& setting, const TexelSamples& samples) {
   const SurfaceTask& task = setting.task;
   if (task.normals != NormalsFrom::estimate)
@@ -115,7 +115,7 @@ std::vector<float> starting_normals(const LobeSetting& setting, const TexelSampl
   return normals;
 }
 
-/// Finds weights and trust, and normals where they are unknown, from the normals that the texels have.
+/// Finds weights and trust, and unknown normals, starting from the normals that the texels have.
 void fit_texels(const LobeSetting& setting, const FactoredBrdf& lobes, bool last, FittedTexels& texels) {
   const SurfaceTask& task = setting.task;
   const TexelSolver solver(lobes, setting.form, setting.exposure);
@@ -126,7 +126,7 @@ void fit_texels(const LobeSetting& setting, const FactoredBrdf& lobes, bool last
                                 .trust = true});
 }
 
-/// Lobes of which each is the log-linear fit to texels that look like one material. Fits the texels to them.
+/// Returns first lobes, each the log-linear fit to texels that look like one material. Fits the texels to them.
 LobesInRounds started_lobes(const LobeSetting& setting, FittedTexels& texels) {
   const SurfaceTask& task = setting.task;
   const SurfaceFitOptions& options = task.options;
@@ -161,7 +161,7 @@ LobesInRounds started_lobes(const LobeSetting& setting, FittedTexels& texels) {
   return lobes;
 }
 
-/// Lobes as a checkpoint has them, whose tables are taken.
+/// Returns the lobes of a checkpoint and moves its tables out.
 LobesInRounds resumed_lobes(const LobeSetting& setting, LobesCheckpoint& begun) {
   const SurfaceTask& task = setting.task;
   const ModelSpec spec = spec_of_lobes(task.options.lobes, setting.bytes_in(begun.rounds - 1));
@@ -179,7 +179,7 @@ LobesInRounds resumed_lobes(const LobeSetting& setting, LobesCheckpoint& begun) 
   return lobes;
 }
 
-/// Texels as a checkpoint has them, those that its round was fitted to; and where they are a part, the normals of all.
+/// Takes the texels of a checkpoint, to which its round was fitted. If they are a part, takes the normals of all too.
 void resume_texels(const LobeSetting& setting, std::size_t lobes, LobesCheckpoint begun, FittedTexels& texels,
                    std::vector<float>& normals_of_all) {
   if (begun.fits.weights.size() != texels.samples.size() * lobes ||
@@ -191,16 +191,16 @@ void resume_texels(const LobeSetting& setting, std::size_t lobes, LobesCheckpoin
   normals_of_all = std::move(begun.normals_of_all);
 }
 
-/// How far pixels are trusted in a round. Before lobes have been refined once, it is they that are wrong. Where
-/// highlights are clipped, the few that are not say how bright lobes are, and look like outliers until lobes are:
-/// while they have few nodes, only large errors count against a pixel.
+/// The trust in pixels in a round. Before the first refinement the lobes are wrong, not the pixels. Where highlights
+/// are clipped, the few unclipped pixels tell how bright lobes are, but look like outliers until lobes are bright. So
+/// large errors alone count against a pixel while lobes have few nodes.
 PixelTrust trust_in(const LobeSetting& setting, int round) noexcept {
   if (round == 0) return PixelTrust::alike;
   return setting.clipped && setting.is_coarse(round) ? PixelTrust::mild : PixelTrust::as_found;
 }
 
-/// One round: the lobes by pixels of the texels, then the texels by the lobes. Notes both, and the normals of all
-/// texels where these are a part, in the checkpoint.
+/// One round: fits the lobes to pixels of the texels, then the texels to the lobes. Writes both to the checkpoint,
+/// with the normals of all texels if these texels are a part.
 void refine_round(const LobeSetting& setting, const std::vector<float>& normals_of_all, LobesInRounds& lobes,
                   FittedTexels& texels) {
   const SurfaceTask& task = setting.task;
@@ -242,8 +242,8 @@ void refine_round(const LobeSetting& setting, const std::vector<float>& normals_
                                                         .normals_of_all = normals_of_all}));
 }
 
-/// The rounds whose lobes have few nodes, on every step-th texel. All texels are fitted after them, from the normals
-/// that they had before.
+/// Runs the rounds whose lobes have few nodes, on every step-th texel. Then fits all texels, starting from the
+/// normals that they had before.
 void refine_coarsely(const LobeSetting& setting, std::size_t step, std::optional<LobesCheckpoint> begun,
                      LobesInRounds& lobes, FittedTexels& texels) {
   FittedTexels part{.samples = every(texels.samples, step),
@@ -256,14 +256,15 @@ void refine_coarsely(const LobeSetting& setting, std::size_t step, std::optional
   fit_texels(setting, lobes.brdf, true, texels);
 }
 
-/// Lobes, after all rounds of the task. Texels have their normals before, and all that is found of them after.
+/// Returns the lobes after all rounds of the task. `texels` begins with normals and ends with all that is fitted to
+/// them.
 FactoredBrdf fitted_lobes(const LobeSetting& setting, std::optional<LobesCheckpoint> begun,
                           FittedTexels& texels) {
   LobesInRounds lobes = begun ? resumed_lobes(setting, *begun) : started_lobes(setting, texels);
-  // Texels are thinned until a round has seen all of them.
+  // Only a part of the texels is used until a round has seen all of them.
   const std::size_t step = texels.samples.size() / kCoarseTexels;
   const bool seen_all = lobes.rounds > 0 && !setting.is_coarse(lobes.rounds - 1);
-  std::vector<float> no_more;  // normals: texels are all that there are
+  std::vector<float> no_more;  // normals: the texels are not a part
   if (step > 1 && setting.is_coarse(0) && !seen_all)
     refine_coarsely(setting, step, std::move(begun), lobes, texels);
   else if (begun)
@@ -272,7 +273,7 @@ FactoredBrdf fitted_lobes(const LobeSetting& setting, std::optional<LobesCheckpo
   return std::move(lobes.brdf);
 }
 
-/// Of each lobe's weights: what nearly all of the sampled texels have, and some room.
+/// The scale of each lobe's weights: a value that nearly all sampled texels stay below, with some room.
 std::vector<float> scales_of(const std::vector<float>& weights, std::size_t lobes) {
   std::vector<float> scales;
   for (std::size_t j = 0; j < lobes; ++j) {
@@ -289,7 +290,7 @@ std::vector<float> scales_of(const std::vector<float>& weights, std::size_t lobe
 }  // namespace
 
 SurfaceLobes find_lobes(Capture& capture, const SurfaceTask& task, std::optional<LobesCheckpoint> begun) {
-  // Every rank does what is small, and its share of the rest: reading, starts, channels and texels.
+  // Small steps run at every rank. Reading, starts, channels and texels are shared by the ranks.
   const SurfaceFitOptions& options = task.options;
   SampledTexels sampled = sample_texels(
       capture, kSampleValues, options.tile_bytes, options.seed,

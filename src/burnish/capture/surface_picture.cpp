@@ -62,7 +62,7 @@ Image8 surface_picture(const Capture& capture, const SpatialBrdf& surface, std::
   std::copy_n(&read.rows.values[picture * measured.pixels.size()], measured.pixels.size(),
               measured.pixels.begin());
 
-  // side by side
+  // The panels stand side by side.
   std::vector<Image8> panels{to_bytes(measured, exposure, Tone::srgb),
                              to_bytes(modelled(form, surface, form.pictures[picture]), exposure, Tone::srgb)};
   for (const SurfaceMap& map : std::span(surface.maps().weights).first(surface.own_lobes()))

@@ -6,9 +6,10 @@
 
 namespace burnish {
 
-/// A picture of a capture, by its number in the form, beside the surface under the same light from the same side, both
-/// times `exposure` and as sRGB, and then each lobe's weights, white where they are largest. Throws Error if there is
-/// no such picture, it is damaged, or the surface has another size or other than three channels.
+/// Returns a sheet of panels: a picture of a capture, by its number in the form; the surface under the same light and
+/// view; and each lobe's weights, white at their largest. The first two are multiplied by `exposure` and shown as
+/// sRGB. Throws Error if there is no such picture, if it is damaged, or if the surface has another size or other than
+/// three channels.
 Image8 surface_picture(const Capture& capture, const SpatialBrdf& surface, std::size_t picture,
                        double exposure);
 

@@ -11,7 +11,7 @@ namespace burnish {
 /// "capture", "flat" or "estimated".
 const char* name_of(NormalsFrom normals) noexcept;
 
-/// What report_json writes.
+/// The JSON object that report_json writes.
 nlohmann::ordered_json json_of(const SurfaceReport& report);
 
 }  // namespace burnish

@@ -8,27 +8,27 @@
 
 namespace burnish {
 
-/// What a fit was asked, as all of its steps see it: options that are in range, and what they left to the capture.
-/// Nothing in it changes while the fit runs.
+/// The task of a fit, as all of its steps see it: options in range, and the values that the options left to the
+/// capture. Nothing in it changes while the fit runs.
 struct SurfaceTask {
   const SurfaceFitOptions& options;
-  NormalsFrom normals;               ///< what the options say, or what suits the capture
-  int rounds;                        ///< of lobes and weights in turn
+  NormalsFrom normals;               ///< from the options, or else what suits the capture
+  int rounds;                        ///< each finds lobes, then weights
   std::vector<float> known_normals;  ///< of all texels, [row][x][2]; empty unless `normals` is of the capture
-  std::uint64_t key;  ///< of the capture as it was opened and of all that changes the result; even
+  std::uint64_t key;  ///< a hash of the capture as opened and of all that changes the result; even
 
   int ranks() const noexcept { return options.crew ? options.crew->ranks() : 1; }
   int rank() const noexcept { return options.crew ? options.crew->rank() : 0; }
-  /// Whether this process writes checkpoints.
+  /// True if this process writes checkpoints.
   bool notes_progress() const noexcept { return !options.checkpoint.empty() && rank() == 0; }
-  /// Passes on what is done, at the rank that leads.
+  /// Reports progress, at the leading rank only.
   void progress(std::string_view stage, double fraction) const {
     if (options.progress && rank() == 0) options.progress(stage, fraction);
   }
 };
 
-/// The task that options are of a capture that was just opened; the options must outlive it. Throws Error for options
-/// out of range, normals that the capture has not, and as Capture::normals does.
+/// Returns the task that options set for a capture that was just opened. The options must outlive the task. Throws
+/// Error for options out of range, for normals that the capture does not have, and as Capture::normals does.
 SurfaceTask task_of(const Capture& capture, const SurfaceFitOptions& options);
 
 }  // namespace burnish

@@ -21,18 +21,18 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Writes the checkpoint of rows now and then. It holds all rows that are done, so it is written after a turn that took
-/// so many times as long as the last writing, and after so many parts of the surface.
+/// Writes the checkpoint of rows now and then. It always holds all finished rows. So it is written only once
+/// kWorthOfASave times the duration of the last writing has passed, or after one of kSavedParts parts of the surface.
 class RowNotes {
  public:
-  /// Begins with the lobes, where no row is done.
+  /// Starts with the lobes, before any row is done.
   RowNotes(const SurfaceTask& task, const FitCheckpoint& done, int height)
       : task_(task), done_(done), part_(std::max(height / kSavedParts, 1)), saved_(done.rows) {
     if (done.rows == 0) save();
     saved_at_ = Clock::now();
   }
 
-  /// After each turn.
+  /// Called after each turn.
   void note() {
     if (seconds_since(saved_at_) < kWorthOfASave * save_seconds_ && done_.rows - saved_ < part_) return;
     save();
@@ -57,17 +57,17 @@ class RowNotes {
   Clock::time_point saved_at_;
 };
 
-/// Of a tile: what memory holds, of several ranks an even part of what is left.
+/// Returns the rows of a tile: as many as memory holds. Several ranks take an even part of the rows.
 int tile_rows(const Capture& capture, const SurfaceTask& task) {
   const int most = capture.rows_within(task.options.tile_bytes), ranks = task.ranks();
   if (ranks == 1) return most;
-  constexpr int kMinTurns = 4;  // of each rank, so that a lost one costs little
+  constexpr int kMinTurns = 4;  // of each rank, so that a lost turn costs little
   const int height = capture.form().height;
   const int turns = std::max(kMinTurns, (height + most * ranks - 1) / (most * ranks));
   return std::max(1, (height + turns * ranks - 1) / (turns * ranks));
 }
 
-/// The weights, and normals, of all texels of some rows, before they are rounded.
+/// Returns the weights, and normals, of all texels of some rows, before rounding.
 TexelFits fit_rows(const CaptureForm& form, const SurfaceTask& task, double exposure,
                    const TexelSolver& solver, const TexelSamples& samples) {
   const bool estimate = task.normals == NormalsFrom::estimate;
@@ -76,7 +76,7 @@ TexelFits fit_rows(const CaptureForm& form, const SurfaceTask& task, double expo
   return solver.solve(samples, std::move(normals), {.passes = 3, .normals = estimate, .normal_steps = 8});
 }
 
-/// Rounds what was found to what is stored, and keeps it in the tile.
+/// Rounds the fits to what is stored, and keeps them in the tile.
 void store(TexelFits& fits, int width, FitCheckpoint& tile) {
   const std::vector<float>& scales = tile.scales;
   const std::size_t lobes = scales.size(), count = fits.weights.size() / lobes;
@@ -94,7 +94,7 @@ void store(TexelFits& fits, int width, FitCheckpoint& tile) {
   tile.normals = fits.normals;
 }
 
-/// Texels that no picture shows which is fitted.
+/// The number of texels that no fitted picture shows.
 std::size_t without_data(const TexelSamples& samples, const CaptureForm& form) {
   std::vector<char> shown(samples.size());
   for (std::size_t p = 0; p < samples.pictures; ++p) {
@@ -105,14 +105,14 @@ std::size_t without_data(const TexelSamples& samples, const CaptureForm& form) {
   return static_cast<std::size_t>(std::ranges::count(shown, 0));
 }
 
-/// A tile that says nothing yet, of the same lobes.
+/// An empty tile of the same lobes.
 FitCheckpoint empty_tile(const FitCheckpoint& done) {
   FitCheckpoint tile{.lobes = done.lobes, .scales = done.scales, .codes = {}, .normals = {}, .errors = {}};
   tile.codes.resize(done.codes.size());
   return tile;
 }
 
-/// Reads some rows, at least one, and fits and scores them; adds to the seconds.
+/// Reads at least one row, fits and scores the rows, and adds to the seconds.
 FitCheckpoint fitted_tile(const Capture& capture, const SurfaceTask& task, const TexelSolver& solver,
                           const FitCheckpoint& done, int row, int rows, double& seconds) {
   const CaptureForm& form = capture.form();
@@ -152,7 +152,7 @@ SurfaceWeights find_weights(const Capture& capture, const SurfaceTask& task, Fit
   const int ranks = task.ranks(), step = tile_rows(capture, task);
   RowNotes notes(task, done, form.height);
   while (done.rows < form.height) {
-    // a tile a rank, which rank 0 puts together in their order
+    // Each rank finds one tile; rank 0 joins the tiles in their order.
     const int begin = done.rows, end = std::min(begin + ranks * step, form.height),
               row = std::min(begin + task.rank() * step, end), rows = std::min(step, end - row);
     const FitCheckpoint tile =

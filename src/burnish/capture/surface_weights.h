@@ -8,20 +8,22 @@
 
 namespace burnish {
 
-/// What find_weights returns.
+/// The result of find_weights.
 struct SurfaceWeights {
-  FitCheckpoint done;  ///< with all rows; only their number at ranks that do not lead
-  double seconds = 0;  ///< of these in weights and normals, without reading and scoring; of this rank
+  FitCheckpoint done;  ///< with all rows; at ranks other than the leading one, only their number
+  double seconds = 0;  ///< on weights and normals at this rank, without reading and scoring
 };
 
-/// Finds the weights of the rows that `begun` has not, and normals where the task estimates them, rounds them to what
-/// is stored, and scores what was rounded. `begun` has lobes, scales, exposure, and rows from the first on, none to all.
-/// A turn is a tile a rank, which the rank that leads puts together in their order; it writes the task's checkpoint now
-/// and then. The same bits for any tiles and ranks. Throws Error as Capture::read, and where a picture is
-/// damaged that was sound when it was read first.
+/// Finds the weights of the rows that `begun` lacks, and normals if the task estimates them. Rounds them to what is
+/// stored, and scores the rounded values. `begun` has lobes, scales, exposure, and rows from the first on, none to
+/// all.
+///
+/// In each turn every rank finds one tile. The leading rank joins the tiles in their order, and writes the task's
+/// checkpoint now and then. The result has the same bits for any tiles and ranks. Throws Error as Capture::read, and
+/// if a picture is damaged that was sound when it was first read.
 SurfaceWeights find_weights(const Capture& capture, const SurfaceTask& task, FitCheckpoint begun);
 
-/// The means of errors of the pictures that are held out, or of those that are not.
+/// The mean errors of the held-out pictures, or of the fitted ones.
 PictureScore score_of(const std::vector<TexelSolver::PictureError>& errors, const CaptureForm& form,
                       bool held_out);
 

@@ -17,15 +17,15 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kHalfBins = 32;  // even along the root of theta_h
-// pi / 2 in so many digits: with more of them pixels at the edges of bins would change sides, and the bits of fits.
+// pi / 2 with only these digits: more digits would move pixels at the edges of bins, and so change the bits of fits.
 constexpr double kBinnedAngle = 1.5707963;
-constexpr double kMinPairCosine = 0.05;  // of what counts as a pair; pixels may be lower
+constexpr double kMinPairCosine = 0.05;  // of pairs; pixels may be lower
 constexpr double kMinPixelCosine = 0.02;
 constexpr float kMinTrust = 0.05f;
 constexpr float kEarlyError = 0.07f;          // of squared errors beside those of the last rounds
-constexpr float kHeld = 0.02f;                // weight of clipped pixels that the model already is above
-constexpr std::size_t kDrawsPerPixel = 6;     // many draws are of angles that there are enough of
-constexpr std::uint64_t kFirstStream = 1000;  // of random numbers; those before are others'
+constexpr float kHeld = 0.02f;                // weight of clipped pixels if the model already is above them
+constexpr std::size_t kDrawsPerPixel = 6;     // many draws fall on angles that already have enough pixels
+constexpr std::uint64_t kFirstStream = 1000;  // of random numbers; smaller ones are used elsewhere
 
 Vec3 normal_of(const std::vector<float>& normals, std::size_t t) noexcept {
   if (normals.empty()) return {0, 0, 1};
@@ -33,7 +33,7 @@ Vec3 normal_of(const std::vector<float>& normals, std::size_t t) noexcept {
   return normalize({x, y, std::sqrt(std::max(0.0, 1 - x * x - y * y))});
 }
 
-/// A pixel that may be fitted: which, and its directions in the texel's frame.
+/// A pixel that may be fitted, and its directions in the texel's frame.
 struct Candidate {
   std::uint32_t picture, texel;
   DirectionPair pair;
@@ -42,20 +42,21 @@ struct Candidate {
 
 struct Candidates {
   std::vector<Candidate> pixels;
-  std::vector<std::size_t> in_bin;  // how many of each theta_h
+  std::vector<std::size_t> in_bin;  // number of pixels of each theta_h
 };
 
-/// How much lobes are fitted to a pixel.
+/// The weight of a pixel in the fit of lobes.
 float trust_in(const KnownTexels& known, std::size_t pixel) noexcept {
   if (known.trust == PixelTrust::alike) return 1;
   const float trust = known.fits.trust[pixel];
   if (known.trust == PixelTrust::as_found || trust == 0) return trust;
-  // TexelSolver made trust of an error e as 1 / (1 + e)^2. This is the same of a share of that error.
+  // TexelSolver turned an error e into the trust 1 / (1 + e)^2. The lines below do the same for a share of that
+  // error.
   const float share = 1 + kEarlyError * (1 / std::sqrt(trust) - 1);
   return 1 / (share * share);
 }
 
-/// A pixel, where it is there, can be trusted and does not graze.
+/// Returns a pixel if it is there, can be trusted and is not seen or lit at a grazing angle.
 std::optional<Candidate> candidate(const KnownTexels& known, std::uint32_t t, std::uint32_t p) {
   const TexelSamples& samples = known.samples;
   const std::size_t pixel = p * samples.size() + t;
@@ -71,7 +72,7 @@ std::optional<Candidate> candidate(const KnownTexels& known, std::uint32_t t, st
   return c;
 }
 
-/// Pixels at random of some texels, in the pictures that are fitted.
+/// Draws pixels of some texels at random, in the fitted pictures.
 Candidates candidates(const KnownTexels& known, std::span<const std::size_t> texels, std::size_t draws,
                       Pcg32 random) {
   const TexelSamples& samples = known.samples;
@@ -80,7 +81,7 @@ Candidates candidates(const KnownTexels& known, std::span<const std::size_t> tex
     if (!known.form.pictures[p].held_out) fitted.push_back(static_cast<std::uint32_t>(p));
 
   Candidates found{.pixels = {}, .in_bin = std::vector<std::size_t>(kHalfBins)};
-  constexpr std::size_t kAtOnce = 256;  // pixels that memory is asked for before the first is looked at
+  constexpr std::size_t kAtOnce = 256;  // pixels whose memory is prefetched before the first is used
   std::array<std::pair<std::uint32_t, std::uint32_t>, kAtOnce> drawn;
   for (std::size_t begin = 0; begin < draws; begin += kAtOnce) {
     const auto some = std::span(drawn).first(std::min(kAtOnce, draws - begin));
@@ -101,7 +102,8 @@ Candidates candidates(const KnownTexels& known, std::span<const std::size_t> tex
   return found;
 }
 
-/// How many each bin may give, so that together they give `count`: what small ones leave goes to the others.
+/// Returns the number of pixels that each bin may give so that all bins together give `count`. Bins with fewer pixels
+/// leave their rest to the other bins.
 std::size_t even_part(const std::vector<std::size_t>& in_bin, std::size_t count) {
   const std::size_t bins = kHalfBins - static_cast<std::size_t>(std::ranges::count(in_bin, std::size_t{0}));
   std::size_t part = std::max<std::size_t>(1, count / bins);
@@ -117,7 +119,7 @@ std::size_t even_part(const std::vector<std::size_t>& in_bin, std::size_t count)
   return part;
 }
 
-/// f of the lobes as they are, with the texel's weights.
+/// f of the present lobes, with the texel's weights.
 std::array<float, kCaptureChannels> modelled_at(const LobeEvaluator& lobes, const TexelFits& fits,
                                                 const Candidate& c) {
   std::array<float, LobeEvaluator::kWeightStride * kMaxSurfaceLobes> weights{};
@@ -129,8 +131,8 @@ std::array<float, kCaptureChannels> modelled_at(const LobeEvaluator& lobes, cons
   return f;
 }
 
-/// A clipped value is a lower bound: it stands for what the lobes make of it, where that is more. So a step never
-/// raises the one-sided error, and lobes stay where they are where nothing else holds them.
+/// Adds a pixel to the set. A clipped value is a lower bound: it is replaced by the lobes' value if that is larger. A
+/// step therefore never raises the one-sided error, and lobes stay where they are if nothing else holds them.
 void add_pixel(const KnownTexels& known, const LobeEvaluator* lobes, const Candidate& c, double weight,
                TrainingSet& set) {
   const TexelSamples& samples = known.samples;
@@ -177,14 +179,14 @@ TrainingSet training_pixels(const KnownTexels& known, std::span<const std::size_
   std::optional<LobeEvaluator> evaluator;
   if (known.lobes) evaluator.emplace(*known.lobes);
   const LobeEvaluator* const lobes = evaluator ? &*evaluator : nullptr;
-  // Every other one counts as a pixel: it stands for all that were drawn of its bin.
+  // Every second pixel goes to the pictures: its weight stands for all drawn pixels of its bin.
   for (std::size_t i = 0; i < chosen.size(); i += 2) {
     const std::size_t there = all.in_bin[chosen[i]->bin];
     add_pixel(known, lobes, *chosen[i],
               static_cast<double>(there) / static_cast<double>(std::min(there, part)), set);
   }
   set.picture_count = set.size();
-  // The others count as pairs, all alike.
+  // The other pixels go to the pairs, with equal weights.
   for (std::size_t i = 1; i < chosen.size(); i += 2)
     if (std::min(chosen[i]->pair.wi.z, chosen[i]->pair.wo.z) > kMinPairCosine)
       add_pixel(known, lobes, *chosen[i], 1, set);

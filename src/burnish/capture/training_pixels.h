@@ -11,29 +11,29 @@
 
 namespace burnish {
 
-/// How far pixels are trusted when lobes are fitted to them.
+/// The trust in pixels when lobes are fitted to them.
 enum class PixelTrust {
-  alike,    ///< all alike: TexelFits::trust is not read
-  mild,     ///< as found, but only large errors count against a pixel
-  as_found  ///< as TexelFits::trust says
+  alike,    ///< all pixels count alike: TexelFits::trust is not read
+  mild,     ///< TexelFits::trust, but only large errors count against a pixel
+  as_found  ///< TexelFits::trust as it is
 };
 
-/// Texels whose pixels lobes are fitted to, and what is known of them so far.
+/// Texels whose pixels lobes are fitted to, and the values known for them so far.
 struct KnownTexels {
   const TexelSamples& samples;
   const CaptureForm& form;
   double exposure;
-  /// Normals, or none where all are flat; weights where `lobes` are known; trust where `trust` reads it.
+  /// Normals, or none if all are flat; weights if `lobes` is given; trust if `trust` needs it.
   const TexelFits& fits;
-  const FactoredBrdf* lobes;  ///< what the weights are of; null where no lobe is known yet
+  const FactoredBrdf* lobes;  ///< lobes that the weights belong to; null if no lobe is known yet
   PixelTrust trust;
 };
 
-/// Pixels of some of the texels, drawn at random: as many of each theta_h as there are, up to an even part, together
-/// `count` where there are enough. Half of them, the set's pictures, are weighted as all pixels; the others, its pairs,
-/// evenly over theta_h. A clipped value stands for what the lobes make of it, where that is more: it is a lower bound.
-/// `texels` is in rising order and not empty; the same seed and stream draw the same pixels. Throws Error where no pixel
-/// can be fitted.
+/// Draws pixels of some of the texels at random. Each bin of theta_h gives as many as it has, up to an even part;
+/// together they are `count` if there are enough. Half of them, the set's pictures, are weighted so that they
+/// represent all pixels. The other half, its pairs, count evenly over theta_h. A clipped value is a lower bound: it
+/// is replaced by the lobes' value if that is larger. `texels` is in rising order and not empty. The same seed and
+/// stream draw the same pixels. Throws Error if no pixel can be fitted.
 TrainingSet training_pixels(const KnownTexels& known, std::span<const std::size_t> texels, std::size_t count,
                             std::uint64_t seed, std::uint64_t stream);
 

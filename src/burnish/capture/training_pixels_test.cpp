@@ -12,7 +12,7 @@
 namespace burnish {
 namespace {
 
-// Flat texels under lights of many angles; a pixel's red says which it is.
+// Flat texels under lights of many angles. The red value of a pixel is its number.
 struct NumberedPixels {
   static constexpr std::size_t kTexels = 6, kPictures = 40;
   CaptureForm form{.width = kTexels, .height = 1, .normals = {}, .pictures = {}};
@@ -39,7 +39,7 @@ struct NumberedPixels {
         {.samples = samples, .form = form, .exposure = 2, .fits = fits, .lobes = nullptr, .trust = trust},
         texels, 400, 1, stream);
   }
-  /// Pixel i of a set, [picture][texel].
+  /// The number of pixel i of a set, counted as [picture][texel].
   static std::size_t number(const TrainingSet& set, std::size_t i) {
     const double red = static_cast<double>(set.values[3 * i]) * set.pairs[i].wi.z;
     return static_cast<std::size_t>(std::lround(red)) - 1;
@@ -65,7 +65,7 @@ TEST(TrainingPixels, AreOfTheTexelsAndPicturesThatAreFitted) {
   }
   EXPECT_EQ(texels, (std::set<std::size_t>{1, 4}));
   EXPECT_GT(pictures.size(), 30u);
-  // the same draw again, and another
+  // The same stream draws the same pixels, and another stream draws others.
   EXPECT_EQ(pixels.drawn({1, 4}, PixelTrust::alike).values, set.values);
   EXPECT_NE(pixels.drawn({1, 4}, PixelTrust::alike, 1).values, set.values);
 }
@@ -83,8 +83,8 @@ TEST(TrainingPixels, CountAsTheyAreTrusted) {
   };
   EXPECT_EQ(kinds_of(PixelTrust::alike), (std::set<std::size_t>{0, 1, 2}));
   EXPECT_EQ(kinds_of(PixelTrust::as_found), (std::set<std::size_t>{2}));
-  EXPECT_EQ(kinds_of(PixelTrust::mild), (std::set<std::size_t>{1, 2}));  // what is not there stays away
-  // pairs have a weight of 1 times the trust
+  EXPECT_EQ(kinds_of(PixelTrust::mild), (std::set<std::size_t>{1, 2}));  // pixels of trust 0 are not drawn
+  // A pair's weight is 1 times its trust.
   const TrainingSet set = pixels.drawn(all, PixelTrust::as_found);
   for (std::size_t i = set.picture_count; i < set.size(); ++i) EXPECT_EQ(set.weights[i], 0.5f);
 }
