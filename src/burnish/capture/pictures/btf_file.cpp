@@ -18,11 +18,11 @@ namespace burnish {
 namespace {
 
 constexpr std::string_view kSignature = "!DFMF08FCR";
-constexpr std::size_t kLanes = 64;  // texels whose sums stand in registers
+constexpr std::size_t kLanes = 64;  // texels whose sums fit in registers
 constexpr std::uint32_t kMaxDirections = 4096, kMaxComponents = 4096, kMaxWidth = 16'384;
-constexpr std::uint32_t kMaxVersion = 100;  // of the head, which only grew so far
+constexpr std::uint32_t kMaxVersion = 100;  // of the head, which has only grown so far
 constexpr double kMinZ = 1e-3;              // of a direction above the surface
-// What logarithms had added [btflib, undecorrelate.m: drr_eps]
+// The offset that was added before logarithms were taken [btflib, undecorrelate.m: drr_eps].
 constexpr float kLogOffset = 1e-5f;
 
 float number_at(const char* bytes, int size) noexcept {
@@ -50,14 +50,14 @@ std::vector<float> numbers_of(std::string_view bytes, int size) {
   return numbers;
 }
 
-/// exp(value) - offset, the inverse of what reduced the range.
+/// exp(value) - offset, the inverse of the function that reduced the range.
 float expanded(float value) noexcept {
   return std::exp(value) - kLogOffset;
 }
 
 }  // namespace
 
-/// Reads front to back; every step is checked against the end of the file.
+/// Reads the head front to back; every step is checked against the end of the file.
 class BtfFile::Head {
  public:
   explicit Head(const std::filesystem::path& path)
@@ -124,7 +124,7 @@ bool BtfFile::recognizes(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) return false;
   std::ifstream file(path, std::ios::binary);
   std::array<char, 3> head{};
-  // any of Bonn's formats, so that the others are refused by name
+  // Bonn's other formats are recognized too, so that an error can name them.
   return file.read(head.data(), head.size()) && head[0] == '!' && head[1] >= 'B' && head[1] <= 'P' &&
          head[2] >= 'A' && head[2] <= 'Z';
 }
@@ -143,7 +143,7 @@ BtfFile::BtfFile(std::filesystem::path path) : path_(std::move(path)) {
   fingerprint_ = hash_of(file_stamp(path_), head.hash());
 }
 
-/// What was measured.
+/// Reads the description of the measurement.
 void BtfFile::read_description(Head& head) {
   const std::uint64_t begin = head.offset();
   const auto bytes = head.number<std::uint32_t>("size of the description");
@@ -198,8 +198,8 @@ void BtfFile::read_colours(Head& head) {
   for (float& value : transform_) value = head.number<float>("transform of colours");
 }
 
-/// A channel's matrices: singular values, which the second holds already, then one of pictures and one of texels in
-/// either order.
+/// Reads a channel's matrices. The singular values come first; the second matrix already contains them. Then come a
+/// matrix of pictures and a matrix of texels, in either order.
 BtfFile::Channel BtfFile::read_channel(Head& head) const {
   const std::uint64_t texels = static_cast<std::uint64_t>(width_) * static_cast<std::uint64_t>(height_);
   Channel channel;
@@ -263,7 +263,7 @@ Image BtfFile::Rows::picture(std::size_t number) const {
   Image image(file_->width_, count_, 3);
   const std::size_t texels = image.pixels.size() / 3;
   for (std::size_t block = 0; block * kLanes < texels; ++block) {
-    // components in turn, so that neither rows nor threads change a bit
+    // The sums add one component after the other, so that neither rows nor threads change a bit.
     std::array<std::array<float, kLanes>, 3> sums{};
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t components = file_->channels_[c].components;

@@ -12,39 +12,40 @@
 
 namespace burnish {
 
-/// A bidirectional texture of the University of Bonn (UBO2014, signature !DFMF08FCR): pictures of one surface from all
-/// pairs of some lights and views, each of three decorrelated channels a product of a matrix of pictures and one of
-/// texels. What belongs to the pictures is in memory, texels are read a few rows at a time.
-/// Layout and colours are those of the owners' library, btflib (github.com/cgbonn/btflib, read_ubo_dfmf.m and
-/// undecorrelate.m); the independent pysmtb reads the same.
+/// A bidirectional texture of the University of Bonn (UBO2014, signature !DFMF08FCR): pictures of one surface for all
+/// pairs of some lights and views. Each picture has three decorrelated channels. Each channel is the product of a
+/// matrix of pictures and a matrix of texels. The matrices of pictures are in memory; texels are read a few rows at a
+/// time. Layout and colours follow the owners' library, btflib (github.com/cgbonn/btflib, read_ubo_dfmf.m and
+/// undecorrelate.m). The independent pysmtb reads them in the same way.
 class BtfFile {
  public:
-  /// Whether a file begins so. False if it cannot be read.
+  /// True if a file begins with the signature of one of Bonn's formats. False if it cannot be read.
   static bool recognizes(const std::filesystem::path& path);
 
-  /// Reads all but the texels. Throws Error naming the offset and what was expected there: another kind of Bonn's
-  /// files, lights that are not the same for all views, directions below the surface, other than three channels, a
-  /// colour model that is not implemented, rotated frames, sizes that do not fit the file.
+  /// Reads all but the texels. Throws Error with the offset and what was expected there. It refuses Bonn's other
+  /// kinds of files, lights that differ between views, directions below the surface, other than three channels, a
+  /// colour model that is not implemented, rotated frames, and sizes that do not fit the file.
   explicit BtfFile(std::filesystem::path path);
 
   const std::filesystem::path& path() const noexcept { return path_; }
   int width() const noexcept { return width_; }
   int height() const noexcept { return height_; }
   double pixels_per_mm() const noexcept { return pixels_per_mm_; }  ///< 0 where the file does not say
-  /// Whether values are f cos(theta_i) already, instead of f.
+  /// True if values are already f cos(theta_i), instead of f.
   bool with_cosine() const noexcept { return with_cosine_; }
   const std::vector<Vec3>& lights() const noexcept { return lights_; }  ///< unit vectors
   const std::vector<Vec3>& views() const noexcept { return views_; }    ///< unit vectors
   std::size_t pictures() const noexcept { return lights_.size() * views_.size(); }
-  /// The same bytes before the texels, and as many after them, have the same number.
+  /// A hash of the bytes before the texels and of the number of bytes after them.
   std::uint64_t fingerprint() const noexcept { return fingerprint_; }
-  /// Of a row of texels in a Rows, bytes.
+  /// Bytes of a row of texels in a Rows.
   std::size_t row_bytes() const noexcept;
 
   /// Rows [first, first + count) of all pictures, as factors.
   class Rows {
    public:
-    /// Linear values of picture `light + lights * view`, three channels. The same bits whatever the rows.
+    /// Linear values of picture `light + lights * view`, three channels. They have the same bits whatever rows were
+    /// read.
     Image picture(std::size_t number) const;
 
    private:
@@ -54,11 +55,11 @@ class BtfFile {
     std::array<std::vector<float>, 3> texels_;  ///< [block of kLanes texels][component][lane]
   };
 
-  /// Throws Error if rows are not within the surface or the file has become shorter.
+  /// Throws Error if the rows are not within the surface or the file has become shorter.
   Rows rows(int first, int count) const;
 
  private:
-  /// How three channels become colours: the numbers of the files.
+  /// The colour model of the three channels, with the numbers of the files.
   enum class ColourModel : std::int32_t {
     rgb = 0,
     yuv = 1,

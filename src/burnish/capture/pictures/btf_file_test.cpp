@@ -28,7 +28,7 @@ struct Written {
   Written(const std::string& name, const BtfContent& content) : Written(name, btf_bytes(content)) {}
 };
 
-/// The colours of a texel as the owners' undecorrelate.m has them, in double.
+/// The colours of a texel, computed in double as in the owners' undecorrelate.m.
 std::array<double, 3> colour(const BtfContent& content, std::size_t picture, std::size_t texel) {
   constexpr double kEps = 1e-5;
   double y = content.product(0, picture, texel), u = content.product(1, picture, texel),
@@ -92,7 +92,7 @@ TEST(BtfFile, HoldsWhatTheOwnersReaderGives) {
             for (std::size_t c = 0; c < 3; ++c)
               EXPECT_NEAR(image.pixels[3 * texel + c], colour(content, picture, texel)[c], 2e-6)
                   << colours << ' ' << scalar << ' ' << texels_first;
-          // rows apart are the same bits
+          // Rows that are read alone have the same bits.
           const Image second = file.rows(1, 1).picture(picture);
           EXPECT_TRUE(std::equal(second.pixels.begin(), second.pixels.end(), image.pixels.begin() + 15));
         }
@@ -117,22 +117,22 @@ TEST(BtfFile, IsACapture) {
     const Image image = BtfFile(written.path).rows(1, 1).picture(5);
     const CaptureRows rows = capture.read(1, 1).rows;
     const auto cosine = static_cast<float>(std::cos(content.lights[1][0]));
-    for (std::size_t i = 0; i < 15; ++i)  // f cos(theta_i), which a file holds or not
+    for (std::size_t i = 0; i < 15; ++i)  // f cos(theta_i), with or without the cosine in the file
       EXPECT_NEAR(rows.values[5 * 15 + i], image.pixels[i] * (with_cosine != 0 ? 1 : cosine), 1e-6);
-    // fewer pictures are spread over all, and known apart
+    // Fewer pictures are spread over all of them, and have another fingerprint.
     const Capture fewer(written.path, 4);
     ASSERT_EQ(fewer.form().pictures.size(), 4u);
     EXPECT_EQ(fewer.form().pictures[1], form.pictures[2]);
     EXPECT_NE(fewer.fingerprint(), capture.fingerprint());
     EXPECT_THROW(Capture(written.path, 3), Error);
-    // another one once it was written again
+    // A file that was written again has another fingerprint.
     std::filesystem::last_write_time(
         written.path, std::filesystem::last_write_time(written.path) + std::chrono::seconds(2));
     EXPECT_NE(Capture(written.path).fingerprint(), capture.fingerprint());
   }
 }
 
-// The pictures of a folder as a BTF, a component a picture: the fits score alike.
+// The pictures of a folder, written as a BTF with one component a picture, are fitted with the same score.
 TEST(BtfFile, IsFittedAsAFolderOfItsPictures) {
   const TemporaryFolder folder("btf_fit");
   SurfaceScene scene = small_scene(16, 12, R"("noise":0.01,"held_out":12,"shadows":false)");

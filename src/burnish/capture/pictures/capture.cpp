@@ -22,7 +22,7 @@ constexpr int kCaptureVersion = 1, kMaxSide = 16'384;
 constexpr std::uint64_t kMaxJson = std::uint64_t{64} << 20;
 constexpr double kMinHeight = 1e-3;      // z of a unit vector towards a light or view
 constexpr double kUnitTolerance = 0.02;  // of a direction's length
-// Noise about zero may be negative by so much of the picture's white.
+// Noise about zero may make values negative, down to this part of the picture's white.
 constexpr float kMinValue = -0.05f;
 constexpr std::size_t kHeldOut = 12;  // one of so many pictures of a BTF
 
@@ -39,7 +39,7 @@ Station parse_station(const JsonMember& member) {
   const JsonMember direction = member.at("direction");
   const Vec3 found = direction.vector();
   if (std::abs(length(found) - 1) > kUnitTolerance) direction.fail("a vector of length 1");
-  // what is a unit vector but for rounding is kept to the bit
+  // A vector that is a unit vector up to rounding is kept to the bit.
   constexpr double kRounding = 1e-12;
   const Station station{.is_direction = true,
                         .at = std::abs(length(found) - 1) < kRounding ? found : normalize(found)};
@@ -155,7 +155,7 @@ void Capture::open_folder() {
   const FileBytes file = read_file(form_file(), kMaxJson);
   form_ = parse_capture(file);
 
-  // what is there and has the right size
+  // Files that exist and have the right size are kept.
   std::vector<std::string> why(form_.pictures.size());
   std::vector<std::uint8_t> disagrees(why.size());
   const StatedTransfer meant =
@@ -270,7 +270,7 @@ Image rows_of(const std::filesystem::path& folder, const std::string& file, cons
   return found;
 }
 
-/// Values and states of picture `p`, of `pixels` under a mask, which may be empty.
+/// Fills values and states of picture `p` from `pixels` and a mask, which may be empty.
 void fill_picture(CaptureRows& rows, std::size_t p, const CaptureForm& form, const Image& pixels,
                   const Image& mask) {
   const CapturePicture& picture = form.pictures[p];
@@ -279,7 +279,7 @@ void fill_picture(CaptureRows& rows, std::size_t p, const CaptureForm& form, con
   for (std::size_t i = 0; i < texels; ++i) {
     PixelState state = mask.pixels.empty() || mask.pixels[3 * i] > 0 ? PixelState::there : PixelState::masked;
     float* const to = &rows.values[(p * texels + i) * 3];
-    // at a point, a light's irradiance falls with its distance
+    // The irradiance of a light at a point falls with the square of its distance.
     const int x = static_cast<int>(i % static_cast<std::size_t>(form.width));
     const Vec3 point =
         form.point(x, rows.first_row + static_cast<int>(i / static_cast<std::size_t>(form.width)));

@@ -31,7 +31,7 @@ Image picture(int width, int height, float first) {
   return image;
 }
 
-/// Five pictures by lights that are directions, and what `change` makes of their form.
+/// Five pictures under directional lights, whose form `change` alters.
 struct Folder {
   TemporaryFolder folder;
   CaptureForm form{.width = kWidth, .height = kHeight, .normals = {}, .pictures = {}};
@@ -181,7 +181,7 @@ TEST(Capture, ReadsPngOfEightBits) {
   Folder folder("png");
   Image8 grey(kWidth, kHeight, 3);
   std::ranges::fill(grey.pixels, std::uint8_t{188});
-  write_png(folder.file("0.exr"), grey);  // known by its content
+  write_png(folder.file("0.exr"), grey);  // a PNG is recognized by its content
   for (const Transfer transfer : {Transfer::linear, Transfer::srgb}) {
     folder.form.transfer = transfer;
     folder.save();
@@ -205,7 +205,7 @@ std::string png_chunk(const std::string& type, const std::string& content) {
   return big_endian(static_cast<std::uint32_t>(content.size())) + type + content + big_endian(~sum);
 }
 
-/// One grey of all pixels in 8 or 16 bits, with these chunks.
+/// A PNG in which all pixels have one grey, in 8 or 16 bits, with these chunks.
 std::string grey_png(double grey, bool wide, const std::string& chunks) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
@@ -221,12 +221,12 @@ std::string grey_png(double grey, bool wide, const std::string& chunks) {
                                         wide ? static_cast<const void*>(words.data()) : bytes.data(), 0,
                                         nullptr));
   png.resize(size);
-  // the header, these chunks, then the data, without chunks of the writer's
+  // The file has the header, these chunks, then the data, without the writer's own chunks.
   constexpr std::size_t kHeader = 8 + 25;
   return png.substr(0, kHeader) + chunks + png.substr(png.find("IDAT") - 4);
 }
 
-// "transfer" alone says how numbers are meant; what a chunk says besides is told.
+// "transfer" alone decides how numbers are read. A chunk that contradicts it is reported.
 TEST(Capture, TakesNumbersOfPngAsTransferSaysWhateverTheirChunksSay) {
   const std::string none,
       linear = png_chunk("gAMA", big_endian(100'000)), srgb = png_chunk("sRGB", std::string(1, '\0')),
@@ -249,7 +249,7 @@ TEST(Capture, TakesNumbersOfPngAsTransferSaysWhateverTheirChunksSay) {
       }
 }
 
-// Missing, of another size, no picture, cut in its header: left out and said so.
+// A file that is missing, has another size, is no picture, or is cut in its header is left out and reported.
 TEST(Capture, LeavesDamagedPicturesOut) {
   Folder folder("damaged", 9);
   fs::remove(folder.file("0.exr"));
@@ -262,7 +262,7 @@ TEST(Capture, LeavesDamagedPicturesOut) {
   EXPECT_EQ(capture.left_out()[1].file, "1.exr");
   EXPECT_THAT(capture.left_out()[1].why, HasSubstr("7 x 5"));
 
-  // one whose pixels end: found when they are read
+  // A picture whose pixels are cut off is noticed when they are read.
   const std::string whole = read(folder.file("5.exr"));
   write(folder.file("5.exr"), whole.substr(0, whole.size() - 60));
   EXPECT_TRUE(capture.read(0, 2).damaged.empty());
@@ -291,7 +291,7 @@ TEST(Capture, CountsPixelsThatAreNoNumbersAsMissing) {
   for (const float value : rows.values) EXPECT_TRUE(std::isfinite(value));
 }
 
-// Whatever of it is replaced, written again, or taken away.
+// The fingerprint changes if any file of the capture is replaced, written again, or removed.
 TEST(Capture, IsAnotherOnceAFileOfItWasReplaced) {
   Folder folder("fingerprint", 6);
   folder.form.pictures[1].mask = "mask.png";
@@ -343,7 +343,7 @@ TEST(Capture, NormalsAreUnitVectors) {
   EXPECT_THROW(Capture(folder.folder.path).normals(), Error);
 }
 
-// Any damage of a picture's bytes: it is read, or left out with a reason, and no other exception comes through.
+// A picture with any damaged bytes is read, or left out with a reason; no other exception leaves the reader.
 TEST(Capture, AnyDamagedPictureIsLeftOutOrRead) {
   const Folder folder("hostile");
   const fs::path path = folder.file("0.exr");

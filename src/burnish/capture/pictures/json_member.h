@@ -21,8 +21,8 @@ namespace burnish {
 
 using Json = nlohmann::ordered_json;
 
-/// A member of a JSON text and the way to it, which errors name. Every function throws Error where the text has
-/// something else.
+/// A member of a JSON text and its path, which errors name. Every function throws Error if the text has something
+/// else.
 class JsonMember {
  public:
   JsonMember(const FileBytes& file, const Json& json, std::string name)
@@ -39,7 +39,7 @@ class JsonMember {
     if (!json_->contains(key)) throw Error::in_file(file_->name, child(key), "none");
     return {*file_, (*json_)[key], child(key)};
   }
-  /// Throws Error for a member that is none of `known`; those that begin with _ are notes.
+  /// Throws Error for a member that is not in `known`; members that begin with _ are notes.
   void has_only(std::initializer_list<std::string_view> known) const {
     if (!json_->is_object()) fail("an object");
     for (const auto& [key, value] : json_->items())
@@ -89,7 +89,7 @@ class JsonMember {
   bool is_list() const { return json_->is_array(); }
 
  private:
-  // What is expected where there is one number, or several.
+  // The text for one expected number, or for several.
   template <class T>
   static std::string range(const char* of_one, const char* of_several, T least, T most) {
     return least == most ? fmt::format("{}{}", of_one, least)
@@ -102,7 +102,7 @@ class JsonMember {
   std::string name_;
 };
 
-/// The text of a file as JSON at most 32 deep. Throws Error if it is none.
+/// Parses the text of a file as JSON that is at most 32 levels deep. Throws Error if it is not.
 inline Json parse_json(const FileBytes& file) {
   constexpr int kMaxDepth = 32;
   bool shallow = true;

@@ -48,8 +48,8 @@ bool is_png(std::span<const std::byte> head) {
   return head.size() >= kMagic.size() && std::memcmp(head.data(), kMagic.data(), kMagic.size()) == 0;
 }
 
-/// Walks an EXR's header before OpenEXR sees it, which allocates what an attribute's size says before it reads: every
-/// size must lie within the file, and the data window be one of kMaxPictureSide at most.
+/// Checks an EXR's header before OpenEXR reads it: OpenEXR allocates what an attribute's size says before it reads.
+/// Every size must lie within the file, and no coordinate of its windows may exceed kMaxPictureSide.
 void check_exr_head(const std::filesystem::path& path) {
   const auto size = std::filesystem::file_size(path);
   const std::vector<std::byte> head = head_of(path, std::min<std::uintmax_t>(size, kMaxHead));
@@ -86,7 +86,7 @@ void check_exr_head(const std::filesystem::path& path) {
   }
 }
 
-/// Runs what calls OpenEXR.
+/// Opens an EXR for `use`, and turns OpenEXR's exceptions into Error.
 template <class Use>
 auto with_exr(const std::filesystem::path& path, const Use& use) {
   check_exr_head(path);
@@ -139,8 +139,8 @@ std::uint32_t big_endian(std::string_view four) noexcept {
   return value;
 }
 
-/// Calls visit(type, content, whole chunk) for each chunk that is all there, up to the first of the picture's data;
-/// returns where that begins, or what is no whole chunk.
+/// Calls visit(type, content, whole chunk) for each complete chunk before the first one of picture data. Returns the
+/// offset of that chunk, or of the first incomplete one.
 template <class Visit>
 std::size_t visit_head_chunks(std::string_view bytes, const Visit& visit) {
   std::size_t at = std::min(kPngHead, bytes.size());
@@ -154,7 +154,7 @@ std::size_t visit_head_chunks(std::string_view bytes, const Visit& visit) {
   return at;
 }
 
-/// The file without chunks by which libpng would change its numbers.
+/// Returns the file without the chunks that would make libpng change its numbers.
 std::string without_colour_chunks(std::string_view bytes) {
   std::string kept(bytes.substr(0, std::min(kPngHead, bytes.size())));
   const std::size_t data =
@@ -167,12 +167,12 @@ std::string without_colour_chunks(std::string_view bytes) {
   return kept;
 }
 
-/// A PNG being read.
+/// A PNG that is being read.
 struct PngFile {
   png_image image{};
-  std::string bytes;  // which libpng reads from
+  std::string bytes;  // libpng reads from these
 
-  /// To read its pixels, or its head alone.
+  /// Opens a PNG to read its pixels, or only its head.
   PngFile(const std::filesystem::path& path, bool pixels) {
     image.version = PNG_IMAGE_VERSION;
     if (pixels) bytes = without_colour_chunks(read_file(path).text());
@@ -196,7 +196,7 @@ Image read_png_rows(const std::filesystem::path& path, int first, int count, boo
   const int width = static_cast<int>(png.image.width), height = static_cast<int>(png.image.height);
   if (first < 0 || count < 1 || first + count > height)
     fail(path, fmt::format("rows {} to {}", first, first + count), fmt::format("{} rows", height));
-  // 8 bits as they stand, 16 as linear ones, which libpng does not touch
+  // 8 bits are read as they stand. 16 bits are read as linear values, which libpng does not change.
   const bool wide = (png.image.format & PNG_FORMAT_FLAG_LINEAR) != 0;
   png.image.format = wide ? PNG_FORMAT_LINEAR_RGB : PNG_FORMAT_RGB;
   std::vector<std::uint16_t> words(wide ? PNG_IMAGE_SIZE(png.image) / 2 : 0);
@@ -239,7 +239,7 @@ StatedTransfer stated_transfer(const std::filesystem::path& path) {
   visit_head_chunks(text, [&](std::string_view type, std::string_view content, std::string_view) {
     if (type == "sRGB") stated = StatedTransfer::srgb;
     if (type != "gAMA" || content.size() != 4 || stated == StatedTransfer::srgb) return;
-    // in 1/100000: 1 is linear, 1 / 2.2 what sRGB is written as
+    // gAMA is in 1/100000: 1 is linear, and sRGB is written as 1 / 2.2.
     const std::uint32_t gamma = big_endian(content);
     const auto near = [&](std::uint32_t value) { return gamma + 1000 > value && gamma < value + 1000; };
     stated = near(100'000)  ? StatedTransfer::linear

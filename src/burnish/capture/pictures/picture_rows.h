@@ -7,7 +7,7 @@
 
 namespace burnish {
 
-/// Sides of a picture's file, from its head.
+/// Width and height of a picture, from the head of its file.
 struct PictureSize {
   int width = 0, height = 0;
 };
@@ -15,17 +15,17 @@ struct PictureSize {
 /// Throws Error if the file is no EXR or PNG or its head is damaged.
 PictureSize picture_size(const std::filesystem::path& path);
 
-/// What a PNG's own chunks (gAMA, sRGB) say of its numbers; nothing where they say nothing.
+/// The encoding that a PNG's own chunks (gAMA, sRGB) state; none if they state nothing.
 enum class StatedTransfer { none, linear, srgb, other };
 StatedTransfer stated_transfer(const std::filesystem::path& path);
 
-/// Rows [first, first + count) of an EXR or PNG as three linear channels: of an EXR its R, G, B or, where there are
-/// none, Y; a PNG's 8 bits are sRGB or linear as `srgb` says, its 16 bits likewise, of [0, 1], whatever its chunks say.
-/// A PNG is decoded whole each time. Throws Error if the file is damaged or rows are not within it.
+/// Rows [first, first + count) of an EXR or PNG as three linear channels. An EXR gives R, G, B or, if it lacks these,
+/// Y. A PNG's values of 8 or 16 bits lie in [0, 1] and are sRGB or linear as `srgb` says, whatever its chunks say. A
+/// PNG is decoded whole each time. Throws Error if the file is damaged or the rows are not within it.
 Image read_picture_rows(const std::filesystem::path& path, int first, int count, bool srgb);
 
-/// An EXR without compression, which is read fastest by rows: halves R, G, B. Throws Error for other channels than
-/// three. Values are clamped to what halves hold.
+/// Encodes an EXR without compression, which is fastest to read by rows: halves R, G, B. Throws Error if there are
+/// other than three channels. Values are clamped to the range of halves.
 std::string encode_half_exr(const Image& image);
 
 }  // namespace burnish

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kAcross = 5, kDown = 4;
 
-// Any rows of the whole, value_of(i) being that of number i.
+// Reads any rows and compares them with the whole; value_of(i) is value number i.
 template <class Value>
 void expect_rows(const std::filesystem::path& path, bool srgb, Value value_of) {
   for (int first = 0; first < kDown; ++first)
@@ -41,7 +41,7 @@ TEST(PictureRows, OfAnExrAreItsHalves) {
   const PictureSize size = picture_size(path);
   EXPECT_EQ(size.width, kAcross);
   EXPECT_EQ(size.height, kDown);
-  for (const bool srgb : {false, true})  // which is of PNG alone
+  for (const bool srgb : {false, true})  // which only PNG uses
     expect_rows(path, srgb, [&](std::size_t i) {
       return i == 4 ? 65504.0f : i == 5 ? -65504.0f : round_to_half(image.pixels[i]);
     });

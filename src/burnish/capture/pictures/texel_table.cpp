@@ -14,7 +14,7 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kHeadBytes = 64 << 10;
-constexpr std::size_t kHeldOutSample = 12;  // of a texel one of so many, where the file does not say
+constexpr std::size_t kHeldOutSample = 12;  // one of so many samples of a texel, if the file marks none
 
 }  // namespace
 
@@ -33,7 +33,7 @@ TexelTable::TexelTable(const std::filesystem::path& path, int most_side, std::si
   fingerprint_ = hash_of(file.text());
   const TexelCsv read = parse_texel_csv(file, most_side - 1);
 
-  // how large the surface is
+  // The largest texel gives the size of the surface.
   for (const auto& [x, y] : read.texels) {
     width_ = std::max(width_, x + 1);
     height_ = std::max(height_, y + 1);
@@ -43,7 +43,7 @@ TexelTable::TexelTable(const std::filesystem::path& path, int most_side, std::si
     throw Error::in_file(file.name, fmt::format("at least a sample a texel, of {} x {}", width_, height_),
                          fmt::format("{} samples", read.texels.size()));
 
-  // by texel, in the order of the file
+  // Samples are sorted by texel, in the order of the file.
   const auto texel_of = [&](std::size_t i) {
     return static_cast<std::size_t>(read.texels[i][1]) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(read.texels[i][0]);
@@ -64,7 +64,7 @@ TexelTable::TexelTable(const std::filesystem::path& path, int most_side, std::si
     sample.held_out = read.held_out.empty() ? static_cast<std::uint8_t>(every) : read.held_out[i];
   }
 
-  // as many pictures as the texel of most samples has
+  // There are as many pictures as the texel with most samples has.
   for (std::size_t t = 0; t < texels; ++t) {
     std::size_t held_out = 0;
     for (std::size_t i = starts_[t]; i < starts_[t + 1]; ++i) held_out += samples_[i].held_out;
@@ -90,7 +90,7 @@ CaptureRows TexelTable::rows(int first, int count) const {
   rows.states.resize(rows.pictures * texels, PixelState::missing);
   rows.directions.resize(6 * rows.pictures * texels);
   for (std::size_t z = 2; z < rows.directions.size(); z += 3)
-    rows.directions[z] = 1;  // of those that are missing
+    rows.directions[z] = 1;  // missing samples have the normal as direction
   for (std::size_t t = 0; t < texels; ++t) {
     std::size_t next_fitted = 0, next_held_out = fitted_;
     for (std::size_t i = starts_[begin + t]; i < starts_[begin + t + 1]; ++i) {

@@ -11,14 +11,14 @@
 
 namespace burnish {
 
-/// Samples of each texel of a surface, in memory, ordered as pictures: a texel's k-th sample belongs to picture k. The
-/// pictures that are held out come last. 37 bytes a sample.
+/// Samples of each texel of a surface, in memory, ordered as pictures: a texel's k-th sample belongs to picture k.
+/// The held-out pictures come last. A sample takes 37 bytes.
 class TexelTable {
  public:
-  /// Whether a file begins so. False if it cannot be read.
+  /// True if a file begins like a CSV of samples. False if it cannot be read.
   static bool recognizes(const std::filesystem::path& path);
 
-  /// Reads a file as parse_texel_csv does, of at most so many texels a side and samples a texel. Throws Error where
+  /// Reads a file as parse_texel_csv does, with at most so many texels a side and samples a texel. Throws Error if
   /// there is less than one sample a texel on the mean, and what parse_texel_csv throws.
   TexelTable(const std::filesystem::path& path, int most_side, std::size_t most_pictures);
 
@@ -26,7 +26,7 @@ class TexelTable {
   int height() const noexcept { return height_; }
   std::size_t pictures() const noexcept { return fitted_ + held_out_; }
   std::size_t fitted_pictures() const noexcept { return fitted_; }
-  /// The same bytes have the same number.
+  /// A hash of the file's bytes.
   std::uint64_t fingerprint() const noexcept { return fingerprint_; }
 
   /// Rows [first, first + count) of all pictures.
@@ -41,7 +41,7 @@ class TexelTable {
 
   int width_ = 0, height_ = 0;
   std::size_t fitted_ = 0, held_out_ = 0;
-  std::vector<std::size_t> starts_;  ///< of each texel's samples, and their end
+  std::vector<std::size_t> starts_;  ///< the first sample of each texel, then the end
   std::vector<Sample> samples_;
   std::uint64_t fingerprint_ = 0;
 };

@@ -39,7 +39,7 @@ TEST(TexelTable, GivesEachTexelItsSamplesInOrder) {
   EXPECT_EQ(capture.form().width, 2);
   EXPECT_EQ(capture.form().height, 2);
   EXPECT_FALSE(capture.form().directional());
-  // of fifteen the twelfth is held out
+  // The twelfth of fifteen samples is held out.
   ASSERT_EQ(capture.form().pictures.size(), 15u);
   for (std::size_t p = 0; p < 15; ++p) EXPECT_EQ(capture.form().pictures[p].held_out, p == 14);
 
@@ -55,7 +55,7 @@ TEST(TexelTable, GivesEachTexelItsSamplesInOrder) {
       EXPECT_EQ(rows.states[pixel(p, t)], t == 2 && p == 0 ? PixelState::there : PixelState::missing);
   }
   EXPECT_EQ(rows.directions[6 * pixel(0, 2) + 3], 0.6f);
-  // a row by itself is the same
+  // A row that is read alone is the same.
   const CaptureRows second = capture.read(1, 1).rows;
   EXPECT_EQ(second.values[0], rows.values[3 * pixel(0, 2)]);
   EXPECT_EQ(second.states[0], PixelState::there);
@@ -71,7 +71,7 @@ TEST(TexelTable, RefusesWhatIsNoSurface) {
   }
 }
 
-/// The pictures of a folder as samples of texels, those that are held out too.
+/// Writes the pictures of a folder as samples of texels, with the held-out ones.
 void write_as_samples(const Capture& capture, const fs::path& file) {
   const CaptureForm& form = capture.form();
   const CaptureRows rows = capture.read(0, form.height).rows;
@@ -109,10 +109,10 @@ TEST(SurfaceFit, OfSamplesIsThatOfPictures) {
                    samples = fit_surface(Capture(folder.path / "samples.csv"), options);
   EXPECT_EQ(samples.report.pictures, pictures.report.pictures);
   EXPECT_TRUE(samples.report.of_samples);
-  // directions are rounded to floats
+  // Directions are rounded to floats, so scores differ a little.
   EXPECT_NEAR(samples.report.held_out.psnr.value(), pictures.report.held_out.psnr.value(), 0.01);
   EXPECT_NEAR(samples.report.fitted.psnr.value(), pictures.report.fitted.psnr.value(), 0.01);
-  // the surface has bumps, which are found
+  // The surface has bumps, which estimated normals find.
   options.normals = NormalsFrom::estimate;
   EXPECT_GT(fit_surface(Capture(folder.path / "samples.csv"), options).report.held_out.psnr.value(),
             samples.report.held_out.psnr.value() + 8);
@@ -120,7 +120,7 @@ TEST(SurfaceFit, OfSamplesIsThatOfPictures) {
 
 TEST(SurfaceFit, OfSamplesPredictsThoseThatWereHeldOut) {
   BURNISH_SKIP_WHERE_SANITIZED();
-  // directions of each texel's own, and as many as it has; half the surface is another material
+  // Each texel has its own directions, and its own number of them. Half the surface is another material.
   const TemporaryFolder folder("texel_own");
   const AnalyticBrdf left = parse_analytic("lambert:kd=0.5/0.2/0.1"),
                      right = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,f0=0.8/0.6/0.3");

@@ -29,12 +29,12 @@ std::size_t place(int width, int x, int y) noexcept {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
 }
 
-double normal_deviate(Pcg32& random) noexcept {  // Box and Muller's
+double normal_deviate(Pcg32& random) noexcept {  // by Box and Muller
   const double u = 1 - random.uniform(), v = random.uniform();
   return std::sqrt(-2 * std::log(u)) * std::cos(kTwoPi * v);
 }
 
-/// Values in about [-1, 1], cubic between nodes that repeat.
+/// Noise with values in about [-1, 1], cubic between nodes that repeat.
 std::vector<float> noise_values(const NoiseMap& map, int width, int height) {
   std::vector<float> values(place(width, 0, height));
   for (int octave = 0; octave < kOctaves; ++octave) {
@@ -59,7 +59,7 @@ std::vector<float> noise_values(const NoiseMap& map, int width, int height) {
   return values;
 }
 
-/// Of a picture its mean over the channels.
+/// Reads a picture as the mean over its channels.
 std::vector<float> picture_values(const std::filesystem::path& path, int width, int height) {
   const PictureSize size = picture_size(path);
   if (size.width != width || size.height != height)
@@ -80,7 +80,7 @@ NoiseMap parse_noise(const JsonMember& member) {
   return map;
 }
 
-/// A number of them, spread evenly over the directions within an angle of the normal, or a list.
+/// Reads a list of stations, or a count of them, spread evenly over the directions within an angle of the normal.
 std::vector<Station> parse_stations(const JsonMember& member) {
   std::vector<Station> stations;
   if (member.is_list()) {
@@ -99,7 +99,7 @@ std::vector<Station> parse_stations(const JsonMember& member) {
   return stations;
 }
 
-/// Softmax of noise, or pictures divided by their sum.
+/// Reads shares: the softmax of noise, or pictures divided by their sum.
 std::vector<std::vector<float>> parse_shares(const JsonMember& root, const SurfaceScene& scene,
                                              const std::filesystem::path& folder) {
   const std::size_t count = scene.materials.size(), texels = place(scene.width, 0, scene.height);
@@ -145,7 +145,7 @@ std::vector<float> parse_heights(const JsonMember& member, const SurfaceScene& s
   return heights;
 }
 
-/// The heights as triangles, one vertex a texel's middle.
+/// The heights as triangles, with one vertex at each texel's middle.
 MeshPart mesh_of(const SurfaceScene& scene, const CaptureForm& form) {
   MeshPart part;
   for (int y = 0; y < scene.height; ++y)
@@ -163,7 +163,7 @@ MeshPart mesh_of(const SurfaceScene& scene, const CaptureForm& form) {
   return part;
 }
 
-/// Pictures of one scene.
+/// Takes pictures of one scene.
 class SceneCamera {
  public:
   SceneCamera(const SurfaceScene& scene, const CaptureForm& form) : scene_(scene), form_(form) {
@@ -186,7 +186,7 @@ class SceneCamera {
     const int width = scene_.width, height = scene_.height;
     Shot shot{Image(width, height, 3), Image8(width, height, 3)};
     Pcg32 random(scene_.seed, number);
-    // some are a texel off
+    // Some pictures are shifted by a texel.
     int dx = 0, dy = 0;
     if (random.uniform() < scene_.misregistered) {
       const std::uint32_t side = random.next() % 4;
@@ -334,7 +334,7 @@ CaptureForm write_virtual_capture(const SurfaceScene& scene, const std::filesyst
       form.pictures.push_back(std::move(picture));
     }
 
-  // pictures are halves: a clipped pixel is the half next to the scene's
+  // Pictures are halves: clipped pixels have the half nearest to the scene's clip value.
   if (scene.clip)
     form.clip = static_cast<double>(static_cast<float>(Imath::half(static_cast<float>(*scene.clip))));
   const SceneCamera camera(scene, form);

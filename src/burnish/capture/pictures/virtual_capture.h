@@ -12,13 +12,13 @@
 
 namespace burnish {
 
-/// Smooth noise that repeats with the surface: `cells` bumps along each side, and two octaves above.
+/// Smooth noise that repeats with the surface: `cells` bumps along each side, and two finer octaves.
 struct NoiseMap {
   int cells = 4;
   std::uint64_t seed = 1;
 };
 
-/// A surface made of materials, and how pictures of it are taken.
+/// A surface made of materials, and the setup that takes pictures of it.
 struct SurfaceScene {
   int width = 0, height = 0;
   double size_x = 1, size_y = 1;
@@ -28,30 +28,31 @@ struct SurfaceScene {
   std::vector<float> heights;  ///< [row][x], in the unit of `size`; the surface repeats
   std::vector<Station> lights, views;
   double noise = 0;            ///< sigma of the log-normal noise of every value
-  std::optional<double> clip;  ///< what values end at
-  bool shadows = true;         ///< of heights, and what heights hide from a view
-  double misregistered = 0;    ///< share of the pictures that are one texel off, to any of four sides
-  int held_out = 0;            ///< every so many pictures are held out; 0: none
-  bool give_normals = true;    ///< whether the capture says what its normals are
+  std::optional<double> clip;  ///< values end at this one
+  bool shadows = true;         ///< heights cast shadows and hide texels from a view
+  double misregistered = 0;    ///< share of the pictures that are shifted by one texel, to any of four sides
+  int held_out = 0;            ///< one of so many pictures is held out; 0: none
+  bool give_normals = true;    ///< true if the capture has its normals
   std::uint64_t seed = 1;
 };
 
-/// Reads a scene; docs/guide/surfaces.md lists its members. Materials are BRDF arguments; files are named from the
-/// scene's folder. Throws Error, naming file and member.
+/// Reads a scene; docs/guide/surfaces.md lists its members. Materials are BRDF arguments; files are relative to the
+/// scene's folder. Throws Error with file and member.
 SurfaceScene parse_surface_scene(const FileBytes& file, const std::filesystem::path& folder);
 
-/// The normal of a texel, by differences of its neighbours' heights.
+/// The normal of a texel, from differences of its neighbours' heights.
 Vec3 scene_normal(const SurfaceScene& scene, int x, int y) noexcept;
 
-/// Shares of the materials at a texel times their values, reciprocal parts of what was measured, under the texel's
-/// normal, f cos(theta_i) a channel, without shadows, noise and clipping. wi and wo are unit vectors of the surface's
-/// frame.
+/// Returns f cos(theta_i) of a texel, a value a channel, without shadows, noise and clipping: the sum of the
+/// materials' values under the texel's normal, times their shares. Measured materials contribute their reciprocal
+/// part. wi and wo are unit vectors of the surface's frame.
 std::array<double, 3> scene_radiance(const SurfaceScene& scene, int x, int y, Vec3 wi, Vec3 wo);
 
-/// Takes the pictures: a folder with capture.json, halves without compression, one picture for each light and view,
-/// masks of what is in shadow or hidden for those held out, and normals. Pictures are made side by side, a few in
-/// memory at a time; capture.json is written last. The same bytes for any number of threads. Returns what it says.
-/// Throws Error if a material has other than one or three channels or the folder cannot be written.
+/// Takes the pictures and returns the form that capture.json holds. The folder gets capture.json, one picture for
+/// each light and view (halves without compression), normals, and for held-out pictures masks of texels in shadow or
+/// hidden. Pictures are made in parallel, a few in memory at a time; capture.json is written last. The bytes are the
+/// same for any number of threads. Throws Error if a material has other than one or three channels or the folder
+/// cannot be written.
 CaptureForm write_virtual_capture(const SurfaceScene& scene, const std::filesystem::path& folder,
                                   const std::function<void(double fraction)>& progress = nullptr);
 

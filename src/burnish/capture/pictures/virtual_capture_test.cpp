@@ -45,7 +45,7 @@ TEST(VirtualCapture, SharesAddUpAndNormalsFollowTheHeights) {
   }
 }
 
-// A wall across the surface: what lies behind it, seen from a low light, is dark and masked.
+// A wall stands across the surface. The texels behind it, under a low light, are dark and masked.
 TEST(VirtualCapture, CastsShadows) {
   SurfaceScene scene = small_scene(32, 1);
   for (int y = 0; y < 32; ++y)

@@ -21,22 +21,22 @@ std::span<const std::byte> bytes_of(const std::vector<T>& values) {
   return std::as_bytes(std::span(values));
 }
 
-// What both kinds begin with.
+// Writes the items that both kinds of checkpoint begin with.
 void put_head(CborWriter& cbor, std::size_t parts, std::string_view name, std::uint64_t key) {
   cbor.list(parts);
   cbor.text(name);
   cbor.integer(kCheckpointVersion);
   cbor.integer(static_cast<std::int64_t>(key >> 1));
 }
-// The key, behind the list's count.
+// Reads the key, after the list's count.
 std::uint64_t key_from(CborReader& cbor, std::string_view name, const char* expected) {
   if (cbor.text("its name", name.size()) != name) cbor.fail(0, expected, "another file");
   cbor.integer("its version", kCheckpointVersion, kCheckpointVersion);
   return static_cast<std::uint64_t>(cbor.integer("its key", 0, kMaxInteger)) << 1;
 }
 
-// Numbers and letters as they lie in memory, behind their count. Names of files, and messages with names in them, are
-// whatever bytes the system allows.
+// Writes numbers and letters as they lie in memory, after their count. Names of files, and messages with names in
+// them, may hold any bytes that the system allows.
 template <class T>
 void put_values(CborWriter& cbor, std::span<const T> values) {
   cbor.integer(static_cast<std::int64_t>(values.size()));
@@ -103,7 +103,7 @@ std::string format_checkpoint(const FitCheckpoint& checkpoint) {
   cbor.list(checkpoint.scales.size());
   for (const float scale : checkpoint.scales) cbor.number(static_cast<double>(scale));
   cbor.integer(checkpoint.rows);
-  // codes of all lobes, then normals
+  // The codes of all lobes come first, then the normals.
   cbor.list(checkpoint.codes.size() + !checkpoint.normals.empty());
   for (const auto& codes : checkpoint.codes) cbor.bytes(codes);
   if (!checkpoint.normals.empty()) cbor.bytes(bytes_of(checkpoint.normals));

@@ -12,37 +12,38 @@
 
 namespace burnish {
 
-/// How far the fit of a surface is: its lobes, and the rows whose weights are found.
+/// The state of a surface's fit: its lobes, and the rows whose weights are found.
 struct FitCheckpoint {
-  std::uint64_t key = 0;  ///< of the capture and the options; what has another is not gone on from
-  std::vector<Capture::LeftOut> damaged;  ///< pictures that turned out so since the capture was opened
+  std::uint64_t key = 0;  ///< of capture and options; a checkpoint with another key is not resumed
+  std::vector<Capture::LeftOut> damaged;  ///< pictures found damaged since the capture was opened
   std::uint64_t missing_pixels = 0, clipped_pixels = 0;
   double exposure = 1;
   FactoredBrdf lobes;
   std::vector<float> scales;                  ///< of the lobes' codes
-  int rows = 0;                               ///< that are done, from the first on
-  std::vector<std::vector<std::byte>> codes;  ///< [lobe][row][x] of these
-  std::vector<float> normals;                 ///< [row][x][2] of these, or none
-  std::uint64_t texels_without_data = 0;      ///< of these
+  int rows = 0;                               ///< the number of finished rows, from the first on
+  std::vector<std::vector<std::byte>> codes;  ///< [lobe][row][x] of these rows
+  std::vector<float> normals;                 ///< [row][x][2] of these rows, or none
+  std::uint64_t texels_without_data = 0;      ///< in these rows
   std::vector<TexelSolver::PictureError> errors;
 };
 
-/// The same before the lobes are found: after a round of them, all that the next round goes on from.
+/// The state before the lobes are final: all that the next round of lobes needs after a finished round.
 struct LobesCheckpoint {
   std::uint64_t key = 0;
-  int rounds = 0;                               ///< that are done
-  std::vector<std::vector<double>> log_values;  ///< of LogModel
-  TexelFits fits;                               ///< of the texels that the round was fitted to, without costs
-  std::vector<float> normals_of_all;  ///< where that was a part of the texels: what all begin with, or none
+  int rounds = 0;                               ///< the number of finished rounds
+  std::vector<std::vector<double>> log_values;  ///< the tables of LogModel
+  TexelFits fits;                               ///< of the texels of the last round, without costs
+  /// The normals that all texels begin with, if the last round was fitted to a part of them; otherwise none.
+  std::vector<float> normals_of_all;
 };
 
-/// One CBOR item; it is read by the program that wrote it.
+/// Returns one CBOR item. The same version of the program reads it back.
 std::string format_checkpoint(const FitCheckpoint& checkpoint);
 std::string format_checkpoint(const LobesCheckpoint& checkpoint);
-/// Throws Error, naming the offset, for other bytes, and where a number of rows of `width` texels contradicts what
-/// is there.
+/// Throws Error with the offset if the bytes are no checkpoint, or if the number of rows of `width` texels
+/// contradicts the data.
 FitCheckpoint parse_checkpoint(const FileBytes& file, int width);
-/// Nothing where the file is no checkpoint of lobes. Throws Error, naming the offset, where one is damaged.
+/// Returns nothing if the file is no checkpoint of lobes. Throws Error with the offset if one is damaged.
 std::optional<LobesCheckpoint> parse_lobes_checkpoint(const FileBytes& file);
 
 }  // namespace burnish

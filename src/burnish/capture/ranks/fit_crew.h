@@ -5,8 +5,8 @@
 
 namespace burnish {
 
-/// The processes, called ranks, that fit one capture together, and what they say to each other. All of them make the
-/// same calls in the same order.
+/// The processes, called ranks, that fit one capture together, and the messages between them. All ranks make the same
+/// calls in the same order.
 class FitCrew {
  public:
   FitCrew() = default;
@@ -17,9 +17,9 @@ class FitCrew {
   virtual int ranks() const noexcept = 0;
   /// In [0, ranks()); rank 0 leads.
   virtual int rank() const noexcept = 0;
-  /// At rank 0 every rank's bytes, in their order; elsewhere nothing.
+  /// Returns every rank's bytes, in the order of ranks, at rank 0; nothing at the other ranks.
   virtual std::vector<std::string> gather(const std::string& bytes) = 0;
-  /// At every rank what rank 0 gave.
+  /// Returns at every rank the bytes that rank 0 passed.
   virtual std::string broadcast(const std::string& bytes) = 0;
 };
 

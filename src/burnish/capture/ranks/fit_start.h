@@ -11,17 +11,17 @@ namespace burnish {
 /// The steps of a surface's fit that all ranks take.
 enum class FitStep { lobes, weights };
 
-/// What rank 0 tells the others first: the step to begin with. The checkpoint of rows, with the lobes, comes before the
-/// weights either way, as a message of its own.
+/// The first message of rank 0 to the other ranks: the step to begin with. In either case a second message, the
+/// checkpoint of rows with the lobes, precedes the weights.
 struct FitStart {
   FitStep step = FitStep::lobes;
   std::optional<LobesCheckpoint> begun =
-      {};  ///< the round to go on from; none: no round is done. Only of lobes.
+      {};  ///< the round to resume; none: no round is done. Only of step `lobes`.
 };
 
-/// The message's bytes: the step's name and, of lobes, the checkpoint.
+/// The message's bytes: the step's name and, for lobes, the checkpoint.
 std::string format_start(const FitStart& start);
-/// Throws Error, naming what was found, for other bytes, and as parse_lobes_checkpoint does.
+/// Throws Error, which names what was found, for other bytes, and as parse_lobes_checkpoint does.
 FitStart parse_start(const FileBytes& message);
 
 }  // namespace burnish

@@ -37,7 +37,7 @@ TEST(FitStart, OfOtherBytesThrows) {
   for (const std::string& sent : {std::string(), std::string("weight"), std::string("weights and more"),
                                   std::string("rows"), whole.substr(0, whole.size() - 1), whole + '\0'})
     EXPECT_THROW(parse_start(memory_file(sent)), Error) << sent.size();
-  // a checkpoint of rows, which is a message of its own
+  // A checkpoint of rows is a message of its own and is refused here.
   EXPECT_THROW(parse_start(memory_file("lobes" + format_checkpoint(some_checkpoint(true)))), Error);
   EXPECT_THAT(error_of([] { parse_start(memory_file("rows")); }),
               testing::HasSubstr("expected weights or lobes, found another message"));

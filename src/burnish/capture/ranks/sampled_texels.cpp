@@ -10,7 +10,7 @@ namespace burnish {
 
 namespace {
 
-/// x and y of the sampled texels, row by row.
+/// Returns x and y of the sampled texels, row by row.
 std::vector<std::array<int, 2>> spread_texels(int width, int height, std::size_t count, std::uint64_t seed) {
   const double cell =
       std::max(1.0, std::sqrt(static_cast<double>(width) * height / static_cast<double>(count)));
@@ -40,14 +40,14 @@ SampledTexels empty_sample(const CaptureForm& form, std::size_t most_values, std
   return found;
 }
 
-/// The first sampled texel at or below a row.
+/// The place of the first sampled texel in or below a row.
 std::size_t first_from(const TexelSamples& all, int row) {
   return static_cast<std::size_t>(
       std::ranges::lower_bound(all.texels, row, {}, [](const std::array<int, 2>& t) { return t[1]; }) -
       all.texels.begin());
 }
 
-/// Takes what is sampled of some rows.
+/// Copies the sampled texels of some rows.
 void keep_rows(const CaptureRows& rows, const CaptureForm& form, SampledTexels& found) {
   TexelSamples& all = found.samples;
   const std::size_t begin = first_from(all, rows.first_row),
@@ -64,7 +64,7 @@ void keep_rows(const CaptureRows& rows, const CaptureForm& form, SampledTexels& 
         std::copy_n(&rows.directions[6 * from], 6, &all.directions[6 * (p * all.size() + t)]);
     }
     if (form.pictures[p].held_out || form.own_directions)
-      continue;  // texels have as many samples as they have
+      continue;  // texels have different numbers of samples
     const auto states = std::span(rows.states).subspan(p * texels, texels);
     found.missing += static_cast<std::size_t>(std::ranges::count(states, PixelState::missing));
     found.clipped += static_cast<std::size_t>(
@@ -72,7 +72,7 @@ void keep_rows(const CaptureRows& rows, const CaptureForm& form, SampledTexels& 
   }
 }
 
-/// The sample by the ranks of a crew; nothing where a picture is damaged.
+/// Samples by the ranks of a crew; returns nothing if a picture is damaged.
 std::optional<SampledTexels> sample_by_crew(Capture& capture, std::size_t most_values, std::size_t tile_bytes,
                                             std::uint64_t seed, FitCrew& crew) {
   const CaptureForm& form = capture.form();
@@ -85,7 +85,7 @@ std::optional<SampledTexels> sample_by_crew(Capture& capture, std::size_t most_v
     const std::size_t begin = first_from(all, row), end = first_from(all, row + step);
     return std::pair(begin, end > begin ? end - begin : 0);
   };
-  // of a tile: whether it is sound, what is counted, what is sampled
+  // The result of a tile says if it is sound, then has the counts and the sampled values.
   const auto made = made_together(&crew, tiles, [&](std::size_t tile) {
     const int row = static_cast<int>(tile) * step;
     SampledTexels own{.samples = std::move(all)};

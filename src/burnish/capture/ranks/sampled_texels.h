@@ -9,9 +9,10 @@
 
 namespace burnish {
 
-/// Texels spread evenly over a capture's surface, one at random in each cell of a grid, as many as hold about so many
-/// values in all pictures. Reads every picture once, tile by tile, and leaves out those that turn out damaged. Ranks of
-/// a crew, all of which call this, read tiles in turn, and every picture again, each of them, where one is damaged.
+/// Samples texels that are spread evenly over a capture's surface: one at random in each cell of a grid. Their number
+/// is such that all pictures together have about `most_values` values of them. Every picture is read once, tile by
+/// tile; pictures that turn out damaged are left out. All ranks of a crew call this and read tiles in turn. If a
+/// picture is damaged, each rank reads every picture again.
 struct SampledTexels {
   TexelSamples samples;
   std::size_t missing = 0, clipped = 0;  ///< pixels of all texels in pictures that are fitted

@@ -27,7 +27,7 @@ TEST(SampledTexels, AreThePicturesOneInEachCell) {
   const Capture capture(folder.folder.path);
   const std::size_t pictures = capture.form().pictures.size();
   const CaptureRows rows = capture.read(0, kSampledSide).rows;
-  // as many as hold 5 x 5 texels
+  // This many values hold 5 x 5 texels.
   const TexelSamples found = folder.sample(3 * pictures * 25, 1 << 20).samples;
   ASSERT_EQ(found.size(), 25u);
   ASSERT_EQ(found.pictures, pictures);

@@ -13,7 +13,7 @@ namespace burnish {
 
 namespace {
 
-/// The refinements of the channels that this rank has a part in, each begun when it is first asked for.
+/// The refinements of the channels that this rank works on. Each begins at its first use.
 class ChannelRefinements {
  public:
   ChannelRefinements(const LogModel& model, const TrainingSet& set, const RefineOptions& options)
@@ -35,7 +35,8 @@ class ChannelRefinements {
   std::array<std::optional<ChannelRefinement>, kCaptureChannels> begun_;
 };
 
-/// Of two ranks: rank 0 begins the third channel, rank 1 its own, and takes over what rank 0 began.
+/// Shares the third channel between two ranks: rank 0 begins it, while rank 1 works on its own channel. Then rank 1
+/// takes over.
 void halve_third_channel(FitCrew& crew, ChannelRefinements& refinements, int steps) {
   const auto halfway = made_together(&crew, 2, [&](std::size_t rank) {
     ChannelRefinement& channel = refinements.of(2 - rank);
@@ -59,7 +60,8 @@ void refine_together(FitCrew* crew, LogModel& model, const TrainingSet& set, con
     return;
   }
   ChannelRefinements refinements(model, set, options);
-  // Channels do not depend on each other: a rank each. Two ranks have one and half the steps of the third each.
+  // Channels are independent: each rank has one. With two ranks, each has one channel and half the steps of the
+  // third.
   std::vector<std::vector<std::size_t>> channels{{0}, {1}, {2}};  // of each part
   if (crew->ranks() == 2) {
     halve_third_channel(*crew, refinements, options.max_iterations / 2);
@@ -75,7 +77,7 @@ void refine_together(FitCrew* crew, LogModel& model, const TrainingSet& set, con
     }
     return bytes;
   });
-  // Every part holds whole tables, of which its channels count.
+  // Every part holds whole tables; only its own channels are copied.
   for (std::size_t part = 0; part < channels.size(); ++part) {
     std::string_view rest = refined[part];
     for (const std::size_t c : channels[part])

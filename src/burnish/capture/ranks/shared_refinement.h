@@ -7,9 +7,9 @@
 
 namespace burnish {
 
-/// refine() of a model of three channels without tables that these share, the channels shared by the ranks of a crew,
-/// all of which call this with the same model, set and options; null: this process alone. The same bits at every rank
-/// and for any number of them. Throws Error as refine().
+/// Runs refine() for a model of three channels that share no table. The ranks of a crew share the channels. All ranks
+/// call this with the same model, set and options; null: this process alone. The result has the same bits at every
+/// rank and for any number of ranks. Throws Error as refine().
 void refine_together(FitCrew* crew, LogModel& model, const TrainingSet& set, const RefineOptions& options);
 
 }  // namespace burnish

@@ -37,7 +37,7 @@ std::vector<std::string> made_together(FitCrew* crew, std::size_t count,
     for (std::size_t i = 0; i < count; ++i) all[i] = make(i);
     return all;
   }
-  // a rank's results one after the other, each behind its size
+  // A rank's results follow each other, each after its size.
   std::string own;
   for (std::size_t i = rank; i < count; i += ranks) {
     const std::string made = make(i);

@@ -24,7 +24,7 @@ TEST(MadeTogether, IsTheSameInOrderAtEveryRankAndMadeOnce) {
             const std::scoped_lock lock(mutex);
             made.insert(i);
           }
-          // of different lengths, one of them none, with bytes that end a C string
+          // The results differ in length, one is empty, and some have bytes that end a C string.
           return std::string(i % 4, static_cast<char>('a' + i)) + std::string(i % 2, '\0');
         };
       };
@@ -39,7 +39,7 @@ TEST(MadeTogether, IsTheSameInOrderAtEveryRankAndMadeOnce) {
     }
 }
 
-/// Pixels at random, some missing; each seen along directions of its own.
+/// Pixels at random, some of them missing. Each is seen along directions of its own.
 TexelSamples some_samples(std::size_t texels, std::size_t pictures) {
   TexelSamples samples{.texels = {}, .pictures = pictures, .values = {}, .states = {}};
   Pcg32 random(4);
@@ -71,7 +71,7 @@ TEST(SolveTogether, GivesTheSameBitsForAnyNumberOfRanks) {
                                          {tilted, {.normals = true, .normal_steps = 2, .trust = true}}}) {
     const TexelFits alone = solve_together(nullptr, solver, samples, normals, options);
     ASSERT_EQ(alone.weights.size(), 2 * kTexels);
-    for (const int ranks : {2, 3, 9})  // of the last some have no texel
+    for (const int ranks : {2, 3, 9})  // some of nine ranks have no texel
       for (const TexelFits& found : at_every_rank(ranks, [&, n = normals, o = options](FitCrew* crew) {
              return solve_together(crew, solver, samples, n, o);
            })) {

@@ -9,13 +9,13 @@ namespace burnish {
 
 namespace {
 
-/// The least of w' a w / 2 - b' w with w >= 0, by unknowns that are set free one by one [LawsonHanson1974].
+/// Finds the least of w' a w / 2 - b' w with w >= 0: unknowns are set free one by one [LawsonHanson1974].
 class ActiveSet {
  public:
   ActiveSet(std::span<const double> a, std::span<const double> b, std::span<double> w) noexcept
       : a_(a), b_(b), w_(w), n_(b.size()) {}
 
-  /// From the unknowns of w that are not 0.
+  /// Starts with the unknowns of w free that are not 0.
   void start_near() noexcept {
     for (std::size_t i = 0; i < n_; ++i) free_[i] = w_[i] > 0;
     settle();
@@ -33,13 +33,13 @@ class ActiveSet {
  private:
   static constexpr double kMinSquare = 1e-300, kMinSlope = 1e-12;
 
-  /// The unknown at 0 that the sum falls by fastest; their number where there is none.
+  /// The unknown at 0 along which the sum falls fastest; n_ if there is none.
   std::size_t steepest() const noexcept {
     std::size_t best = n_;
     double most = 0;
     for (std::size_t i = 0; i < n_; ++i) {
       if (free_[i]) continue;
-      // The sum falls by b - A w where w grows, less where the unknown's own square is large.
+      // The sum falls by b - A w where w grows. This is divided by the root of the unknown's own square.
       double slope = b_[i];
       for (std::size_t j = 0; j < n_; ++j) slope -= a_[i * n_ + j] * w_[j];
       const double scaled = slope / std::sqrt(std::max(a_[i * n_ + i], kMinSquare));
@@ -51,12 +51,12 @@ class ActiveSet {
     return best;
   }
 
-  /// The least for the free unknowns, by Cholesky.
+  /// Finds the minimum over the free unknowns, by Cholesky.
   void solve_free() noexcept {
     std::size_t m = 0;
     for (std::size_t i = 0; i < n_; ++i)
       if (free_[i]) member_[m++] = i;
-    // The free unknowns' matrix is L L^T: each row of L is found, and at once what L y = b has for it.
+    // The free unknowns' matrix is L L^T. Each row of L is found together with its element of y, where L y = b.
     for (std::size_t i = 0; i < m; ++i) {
       double rest = b_[member_[i]];
       for (std::size_t j = 0; j <= i; ++j) {
@@ -76,12 +76,13 @@ class ActiveSet {
     }
   }
 
-  /// Goes there as far as all stay positive; what would not is fixed at 0, and so on.
+  /// Moves w to the solution for the free unknowns as far as all stay positive. Fixes at 0 the unknown that would
+  /// not, and repeats.
   void settle() noexcept {
     while (changes_ < 3 * n_) {
       ++changes_;
       solve_free();
-      // The way from w to the solution is gone as far as the first unknown that would become negative.
+      // The step from w to the solution ends where the first unknown would become negative.
       double step = 1;
       std::size_t blocking = n_;
       for (std::size_t i = 0; i < n_; ++i)
@@ -94,7 +95,7 @@ class ActiveSet {
         }
       for (std::size_t i = 0; i < n_; ++i)
         if (free_[i]) w_[i] += step * (solution_[i] - w_[i]);
-      // That one is fixed at 0, and the others are solved for again.
+      // This unknown is fixed at 0, and the other unknowns are solved for again.
       if (blocking == n_) break;
       free_[blocking] = false;
       w_[blocking] = 0;

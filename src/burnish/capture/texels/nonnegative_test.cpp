@@ -11,7 +11,8 @@
 namespace burnish {
 namespace {
 
-// The conditions of Karush, Kuhn and Tucker: slopes of what is free vanish, of what is 0 lead up.
+// The conditions of Karush, Kuhn and Tucker hold: slopes along free unknowns vanish, and those along unknowns at 0
+// lead up.
 TEST(SolveNonnegative, FindsTheLeastAtTheBounds) {
   Pcg32 random(5);
   std::size_t at_bound = 0;
@@ -36,7 +37,7 @@ TEST(SolveNonnegative, FindsTheLeastAtTheBounds) {
       }
       at_bound += w[i] == 0;
     }
-    // the same from anywhere
+    // The solution is the same from any start.
     std::vector<double> near(n);
     for (double& value : near) value = random.next() % 3 == 0 ? 0 : 2 * random.uniform();
     solve_nonnegative(a, b, near, true);

@@ -30,8 +30,8 @@ void NormalSteps::run(float* normals, int steps) {
       step(normals, damping);
       block_.fit_weights(1, TexelBlock::kLastPass);
     }
-    // Levenberg and Marquardt's rule, texel by texel: a step that led down is kept and eases the damping, one that led
-    // up is taken back and hardens it.
+    // The rule of Levenberg and Marquardt is applied to each texel. A step that lowers the cost is kept and reduces
+    // the damping. A step that raises it is taken back and increases the damping.
     const Sums found = block_.costs();
     bool taken_back = false;
     for (std::size_t i = 0; i < range.count; ++i) {
@@ -53,16 +53,17 @@ void NormalSteps::run(float* normals, int steps) {
   }
 }
 
-/// A damped step of every normal, weights free to follow: Gauss and Newton's for both, weights eliminated.
+/// Takes a damped Gauss-Newton step for every normal. Its unknowns are the normal and the weights; the weights are
+/// eliminated.
 void NormalSteps::step(float* normals, const Sums& damping) {
-  // The model's slopes along x and y are differences of what the lobes give under normals that are moved.
+  // The model's slopes along x and y are differences to the lobes' values under moved normals.
   for (auto& moved : moved_) moved.resize(block_.model().size());
   block_.see_moved(normals, kNormalDelta, 0, moved_[0]);
   block_.see_moved(normals, 0, kNormalDelta, moved_[1]);
   block_.find_equations(TexelBlock::kLastPass);
   const NormalSums sums = normal_sums();
   for (std::size_t i = 0; i < block_.range().count; ++i) {
-    // Two equations are left for the normal: its own matrix, less what weights that follow take of it, and damped.
+    // Two damped equations are left for the normal: its own matrix, minus the part that the weights take up.
     Eigen::Matrix2d a;
     a << sums.xx[i], sums.xy[i], sums.xy[i], sums.yy[i];
     const double damp = damping[i] * a.trace() + 1e-30;
@@ -71,7 +72,7 @@ void NormalSteps::step(float* normals, const Sums& damping) {
     const Eigen::Vector2d way =
         static_cast<double>(kNormalDelta) * a.ldlt().solve(Eigen::Vector2d(sums.x[i], sums.y[i]));
     if (!way.allFinite()) continue;
-    // The normal goes there by at most kMaxStep, and stays within kMaxSlope of the surface's.
+    // The normal moves by at most kMaxStep, and its x and y stay within kMaxSlope.
     const double share = std::min(1.0, kMaxStep / std::max(way.norm(), 1e-12));
     float* const n = normals + 2 * (block_.range().first + i);
     const double x = static_cast<double>(n[0]) + share * way.x(),
@@ -100,21 +101,21 @@ void NormalSteps::add_picture(std::size_t k, std::size_t c, NormalSums& sums) co
   const std::size_t first = (k * lobes * kCaptureChannels + c) * kTexelLanes,
                     stride = kCaptureChannels * kTexelLanes;
   for (std::size_t i = 0; i < kTexelLanes; ++i) {
-    // How the model changes where the normal moves by kNormalDelta, along x and along y.
+    // sx and sy are the changes of the model when the normal moves by kNormalDelta along x and along y.
     float sx = 0, sy = 0;
     for (std::size_t j = 0; j < lobes; ++j) {
       const std::size_t at = first + j * stride + i;
       sx += weights[j][i] * (moved_[0][at] - model[at]);
       sy += weights[j][i] * (moved_[1][at] - model[at]);
     }
-    // The sums of Gauss and Newton's equations for the normal.
+    // The sums are those of the Gauss-Newton equations for the normal.
     const float omega = terms.omega[i] * block_.trust(k, i), rest = terms.value[i] - terms.model[i];
     sums.xx[i] += static_cast<double>(omega * sx * sx);
     sums.xy[i] += static_cast<double>(omega * sx * sy);
     sums.yy[i] += static_cast<double>(omega * sy * sy);
     sums.x[i] += static_cast<double>(omega * sx * rest);
     sums.y[i] += static_cast<double>(omega * sy * rest);
-    // What its unknowns have in common with the weights.
+    // The mixed sums couple the normal with the weights.
     for (std::size_t j = 0; j < lobes; ++j) {
       const float lobe = omega * model[first + j * stride + i];
       sums.cross_x[j][i] += static_cast<double>(lobe * sx);
@@ -123,7 +124,7 @@ void NormalSteps::add_picture(std::size_t k, std::size_t c, NormalSums& sums) co
   }
 }
 
-/// What of a texel's matrix of the normal goes into weights that follow it: those that are not 0.
+/// Returns the part of a texel's matrix of the normal that the weights take up: those that are not 0.
 Eigen::Matrix2d NormalSteps::eliminated(std::size_t i, const NormalSums& sums) const {
   constexpr int kMax = static_cast<int>(kMaxSurfaceLobes);
   constexpr double kAlike = 1e-4;  // lobes may be alike
@@ -144,7 +145,7 @@ Eigen::Matrix2d NormalSteps::eliminated(std::size_t i, const NormalSums& sums) c
     with(r, 1) = sums.cross_y[j][i];
   }
   own.diagonal().array() += kAlike * own.trace() + 1e-30;
-  // Eliminating the weights takes C^T W^-1 C off the normal's matrix (the Schur complement is what is left).
+  // Eliminating the weights subtracts C^T W^-1 C from the normal's matrix; the rest is the Schur complement.
   return with.transpose() * own.ldlt().solve(with);
 }
 

@@ -10,18 +10,19 @@
 
 namespace burnish {
 
-/// Finds the normals of a block's texels, and their weights with them, by damped steps of Gauss and Newton.
+/// Finds the normals of a block's texels, together with their weights, by damped Gauss-Newton steps.
 class NormalSteps {
  public:
   explicit NormalSteps(TexelBlock& block) : block_(block) {}
 
-  /// From the normals and weights as they are, x and y of all samples' texels, [texel][2]; so many steps. A step that
-  /// raises a texel's cost is taken back.
+  /// Takes `steps` steps from the present normals and weights. `normals` has x and y of all samples' texels,
+  /// [texel][2]. A step that raises a texel's cost is taken back.
   void run(float* normals, int steps);
 
  private:
   using Sums = std::array<double, kTexelLanes>;
-  /// Of a texel's normal: matrix, right side, and products with the weights, by differences of kNormalDelta.
+  /// Sums for a texel's normal: the matrix, the right side, and the products with the weights, by differences of
+  /// kNormalDelta.
   struct NormalSums {
     Sums xx{}, xy{}, yy{}, x{}, y{};
     std::vector<Sums> cross_x, cross_y;  // [lobe]
@@ -33,7 +34,7 @@ class NormalSteps {
   Eigen::Matrix2d eliminated(std::size_t i, const NormalSums& sums) const;
 
   TexelBlock& block_;
-  std::array<std::vector<float>, 2> moved_;  // what lobes give under normals moved along x and y
+  std::array<std::vector<float>, 2> moved_;  // values of the lobes under normals moved along x and y
 };
 
 }  // namespace burnish

@@ -9,14 +9,14 @@ namespace burnish {
 namespace {
 
 constexpr double kRidge = 1e-6;  // of the mean diagonal
-// A pixel's error counts as that of x^(1/2), x = exposure f cos; below this x as if it were this.
+// A pixel's error counts as the error of x^(1/2), x = exposure f cos; smaller x are taken as this.
 constexpr float kFloor = 0.004f;
-// Lobes may run away where nothing holds them: squares of their values stay finite.
+// Lobes may grow without limit where no pixel holds them. Up to this value their squares stay finite.
 constexpr float kMaxValue = 1e4f;
-// Errors of the root at which a pixel counts a quarter, pass by pass.
+// Errors of the root at which a pixel counts a quarter, for each pass.
 constexpr std::array<float, TexelBlock::kLastPass + 1> kTrustedError{1e6f, 0.2f, 0.08f};
-// Shadows are darker than a model: what is brighter is rather a highlight that lobes lack yet, trusted four times as
-// far.
+// Shadows are darker than the model. A brighter pixel is rather a highlight that the lobes lack yet, so it is trusted
+// up to four times the error.
 constexpr float kBrighter = 1.0f / 16;
 
 Vec3 normal_of(const float* xy) noexcept {
@@ -42,7 +42,7 @@ void LobeRows::find(const TexelRange& range, const float* normals, float dx, flo
     const auto plane = [&](std::size_t r) { return std::span<const float>(local_[r]).first(pairs); };
     const std::span<float> f = std::span(lobe_values_).first(rows * pairs);
     setting_.lobes.eval(DirectionSpans{plane(0), plane(1), plane(2), plane(3), plane(4), plane(5)}, f);
-    // Times cos(theta_i), the z of the light, they are the lobes' values of each picture.
+    // The values are multiplied by cos(theta_i), the z of the light.
     for (std::size_t k = 0; k < count; ++k)
       find_products(rows, &f[k * kTexelLanes], pairs, &local_[2][k * kTexelLanes],
                     kMaxValue / setting_.exposure, &to[(first + k) * rows * kTexelLanes]);
@@ -51,13 +51,13 @@ void LobeRows::find(const TexelRange& range, const float* normals, float dx, flo
 
 void LobeRows::find_frames(const TexelRange& range, const float* normals, float dx, float dy) {
   for (std::size_t i = 0; i < kTexelLanes; ++i) {
-    // A texel's place says where lights and views at points are.
+    // Lights and views that are points are seen from the texel's place.
     const std::size_t t = range.texel(i);
     const Vec3 point = setting_.form.point(setting_.samples.texels[t][0], setting_.samples.texels[t][1]);
     points_[0][i] = static_cast<float>(point.x);
     points_[1][i] = static_cast<float>(point.y);
     points_[2][i] = static_cast<float>(point.z);
-    // Its frame stands about its normal, or is the surface's where normals are flat.
+    // The frame stands about the texel's normal; flat normals have the surface's frame.
     ShadingFrame frame;
     if (normals) {
       const std::array<float, 2> xy{normals[2 * t] + dx, normals[2 * t + 1] + dy};
@@ -70,7 +70,7 @@ void LobeRows::find_frames(const TexelRange& range, const float* normals, float 
   }
 }
 
-/// Light and view of a picture as the texels see them, from `first` on in the rows of local_.
+/// Finds light and view of a picture in the texels' frames, from column `first` on in the rows of local_.
 void LobeRows::find_directions(const TexelRange& range, std::size_t picture, std::size_t first) {
   const CapturePicture& form = setting_.form.pictures[picture];
   const TexelSamples& samples = setting_.samples;
@@ -91,12 +91,12 @@ void LobeRows::find_directions(const TexelRange& range, std::size_t picture, std
   }
 }
 
-/// Vectors towards a station, not of length 1 where it is a point: in units in which no square overflows.
+/// Finds vectors towards a station, not of length 1 if it is a point. Their unit is such that no square overflows.
 void LobeRows::find_towards(const Station& station) {
   const std::array<double, 3> at{station.at.x, station.at.y, station.at.z};
   const CaptureForm& form = setting_.form;
   const double unit = station.is_direction ? 1 : 1 / std::max({length(station.at), form.size_x, form.size_y});
-  // A direction is the same from all texels: none of their place is taken off.
+  // A direction is the same from all texels, so their place is not subtracted.
   const float share = station.is_direction ? 0 : static_cast<float>(unit);
   for (std::size_t r = 0; r < 3; ++r) {
     const auto from = static_cast<float>(unit * at[r]);
@@ -134,14 +134,14 @@ void TexelBlock::begin(const TexelRange& range, const float* normals) {
   range_ = range;
   std::ranges::fill(trust_, 1.0f);
   load();
-  // Where all texels see the same directions, what the lobes give is already known from the block before.
+  // If all texels see the same directions, the lobes' values are known from the block before.
   const bool same_for_all = setting_.form.directional() && !normals;
   if (same_for_all && seen_) return;
   see(normals);
   seen_ = true;
 }
 
-/// Lays out what was measured as rows.
+/// Lays out the measured values as rows.
 void TexelBlock::load() {
   any_clipped_ = false;
   for (std::size_t k = 0; k < pictures_.size(); ++k) {
@@ -216,9 +216,9 @@ void TexelBlock::find_equations(int pass) {
 
 void TexelBlock::fit_weights(int passes, int first_pass) {
   for (int pass = first_pass; pass < first_pass + passes; ++pass) {
-    // Reweighted least squares: how a pixel counts goes by the weights of the pass before.
+    // The passes are reweighted least squares: a pixel's weight follows from the previous pass.
     find_equations(pass);
-    // All texels are solved side by side; where the exchange of unknowns did not end, one after the other.
+    // All texels are solved side by side. Texels whose exchange of unknowns did not end are solved one by one.
     const bool near = pass > 0;
     const std::uint32_t found =
         find_weights(lobes_, matrix_.data(), vector_.data(), kRidge, near, weights_.data());
@@ -227,7 +227,7 @@ void TexelBlock::fit_weights(int passes, int first_pass) {
   }
 }
 
-/// The weights of one texel by solve_nonnegative.
+/// Finds the weights of one texel with solve_nonnegative.
 void TexelBlock::solve_one_by_one(std::size_t i, bool near) {
   std::array<double, kMaxSurfaceLobes * kMaxSurfaceLobes> a;
   std::array<double, kMaxSurfaceLobes> b, w;
@@ -239,7 +239,7 @@ void TexelBlock::solve_one_by_one(std::size_t i, bool near) {
     b[k] = static_cast<double>(vector_[k][i]);
     trace += a[k * lobes_ + k];
   }
-  // A ridge on the diagonal, as find_weights adds it, tells lobes apart that are alike.
+  // A ridge on the diagonal, the same as in find_weights, separates lobes that are alike.
   for (std::size_t k = 0; k < lobes_; ++k) {
     a[k * lobes_ + k] += kRidge * trace / static_cast<double>(lobes_) + 1e-30;
     w[k] = static_cast<double>(weights_[k][i]);
@@ -267,7 +267,8 @@ std::array<double, kTexelLanes> TexelBlock::costs() const {
   for (std::size_t k = 0; k < pictures_.size(); ++k)
     for (std::size_t c = 0; c < kCaptureChannels; ++c) {
       const Terms terms = terms_of(k, c, 0);
-      // The loss whose reweighting the last pass is: e / (1 + e / reach^2) of a squared error e [GemanMcClure1987].
+      // The last pass minimizes this loss by reweighting: e / (1 + e / reach^2) of a squared error e
+      // [GemanMcClure1987].
       constexpr float kReach = 0.08f * 0.08f;
       for (std::size_t i = 0; i < kTexelLanes; ++i) {
         const float rest = terms.value[i] - terms.model[i], square = terms.omega[i] * rest * rest;

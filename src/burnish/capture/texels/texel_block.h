@@ -14,7 +14,7 @@
 
 namespace burnish {
 
-/// What a capture's form and the lobes are to the texels of a block. All of it outlives the block.
+/// The form, lobes and samples that a block's texels refer to. All of them outlive the block.
 struct TexelSetting {
   const LobeEvaluator& lobes;
   const CaptureForm& form;
@@ -29,14 +29,14 @@ struct TexelRange {
   std::size_t texel(std::size_t lane) const noexcept { return first + std::min(lane, count - 1); }
 };
 
-/// What lobes of weight 1 give at texels side by side, and room for what is computed on the way.
+/// The values of lobes with weight 1 at texels side by side, with buffers for their computation.
 class LobeRows {
  public:
-  /// Of some pictures, by their numbers in the form.
+  /// Takes pictures by their numbers in the form.
   LobeRows(const TexelSetting& setting, std::span<const std::size_t> pictures);
 
-  /// f cos(theta_i), rows [picture][lobe][channel], under normals (x and y of all samples' texels, [texel][2]) that are
-  /// moved by (dx, dy); flat where `normals` is null.
+  /// Finds f cos(theta_i), rows [picture][lobe][channel]. `normals` has x and y of all samples' texels, [texel][2],
+  /// to which (dx, dy) is added; null: all are flat.
   void find(const TexelRange& range, const float* normals, float dx, float dy, std::span<float> to);
 
   std::size_t rows() const noexcept { return setting_.lobes.lobes() * kCaptureChannels; }  ///< of a picture
@@ -56,40 +56,40 @@ class LobeRows {
   std::vector<float> lobe_values_;
 };
 
-/// Texels side by side whose weights are fitted: what was measured of them, what the lobes give, and the equations of a
-/// pass. Valid after begin(), which may be called again for other texels of the same samples.
+/// Texels side by side whose weights are fitted: their measured values, the lobes' values, and the equations of a
+/// pass. A block is valid after begin(), which may be called again for other texels of the same samples.
 class TexelBlock {
  public:
-  static constexpr int kLastPass = 2;  ///< passes from this on trust pixels least
+  static constexpr int kLastPass = 2;  ///< from this pass on pixels are trusted least
 
-  /// Of the pictures that are held out, or those that are not.
+  /// Takes the held-out pictures, or the fitted ones.
   TexelBlock(const TexelSetting& setting, bool held_out);
-  TexelBlock(const TexelBlock&) = delete;  // lobe_rows_ looks at pictures_
+  TexelBlock(const TexelBlock&) = delete;  // lobe_rows_ refers to pictures_
   TexelBlock& operator=(const TexelBlock&) = delete;
 
-  /// Takes up other texels, all of whose pixels are trusted. Weights stay as they were.
+  /// Takes other texels, and trusts all of their pixels. Weights stay as they were.
   void begin(const TexelRange& range, const float* normals);
   void load_weights(const float* weights);  ///< [texel][lobe] of all samples' texels
 
-  /// Finds what the lobes give under other normals; a pass goes by it.
+  /// Finds the lobes' values under other normals, for the passes that follow.
   void see(const float* normals) { lobe_rows_.find(range_, normals, 0, 0, model_); }
-  /// The same under normals that are moved, into floats of the caller's: as many as model() has.
+  /// Finds the lobes' values under moved normals, in the caller's floats: as many as model() has.
   void see_moved(const float* normals, float dx, float dy, std::span<float> to) {
     lobe_rows_.find(range_, normals, dx, dy, to);
   }
 
-  /// The normal equations of a pass, and the trust that it has in pixels.
+  /// Finds the normal equations of a pass, and its trust in pixels.
   void find_equations(int pass);
-  /// Least squares for the weights, each pass trusting pixels by the errors that the one before left.
+  /// Fits the weights by least squares. Each pass trusts pixels according to the errors that the previous pass left.
   void fit_weights(int passes, int first_pass);
 
-  /// One picture and channel as a pass counts it. omega: see find_omega, of the mean of measured and modelled value,
-  /// in pass 0 of the measured one; 0 of what does not count.
+  /// One picture and channel as a pass counts it. find_omega gives omega, at the mean of measured and modelled value,
+  /// in pass 0 at the measured value; pixels that do not count have 0.
   struct Terms {
     TexelRow value, model, omega;
   };
   Terms terms_of(std::size_t picture, std::size_t channel, int pass) const;
-  /// What is left of the errors of each texel's pixels, as weights count it.
+  /// The remaining cost of each texel's errors, as the fit of weights counts them.
   std::array<double, kTexelLanes> costs() const;
 
   const TexelRange& range() const noexcept { return range_; }
@@ -104,7 +104,7 @@ class TexelBlock {
   }
   /// The model's f cos(theta_i) of one picture and channel.
   TexelRow modelled(std::size_t k, std::size_t c) const noexcept;
-  /// Where the samples have a pixel.
+  /// The place of a pixel in the samples.
   std::size_t pixel(std::size_t k, std::size_t i) const noexcept {
     return pictures_[k] * setting_.samples.size() + range_.texel(i);
   }
@@ -119,7 +119,7 @@ class TexelBlock {
   std::vector<std::size_t> pictures_;
   LobeRows lobe_rows_;
   TexelRange range_;
-  bool seen_ = false;  // whether the model is that of some texels
+  bool seen_ = false;  // true once the model is that of some texels
   std::vector<float> model_, trust_;
   std::vector<TexelRow> weights_, values_, there_, clipped_;
   bool any_clipped_ = false;

@@ -10,7 +10,7 @@ BURNISH_BEGIN_TARGET;
 
 using D = hn::CappedTag<float, kTexelLanes>;
 
-constexpr float kLeastSquare = 1e-30f;  // of vectors that have a direction
+constexpr float kLeastSquare = 1e-30f;  // shorter vectors have no direction
 
 void turn_all(const TexelFrames& frames, const std::array<TexelRow, 3>& towards, bool any_length,
               float* local, std::size_t plane) {
@@ -19,7 +19,7 @@ void turn_all(const TexelFrames& frames, const std::array<TexelRow, 3>& towards,
     auto x = hn::LoadU(d, towards[0].data() + i), y = hn::LoadU(d, towards[1].data() + i),
          z = hn::LoadU(d, towards[2].data() + i);
     if (any_length) {
-      // The vector is divided by its length; one that is too short to have a direction becomes (0, 0, 1).
+      // The vector is divided by its length. A vector that is too short to have a direction becomes (0, 0, 1).
       const auto square = hn::MulAdd(z, z, hn::MulAdd(y, y, hn::Mul(x, x)));
       const auto inverse = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(square));
       const auto far = hn::Ge(square, hn::Set(d, kLeastSquare));
@@ -27,7 +27,7 @@ void turn_all(const TexelFrames& frames, const std::array<TexelRow, 3>& towards,
       y = hn::IfThenElseZero(far, hn::Mul(y, inverse));
       z = hn::IfThenElse(far, hn::Mul(z, inverse), hn::Set(d, 1.0f));
     }
-    // Along each axis of the frame it has their dot product.
+    // Its component along each axis of the frame is their dot product.
     for (std::size_t r = 0; r < 3; ++r) {
       const TexelRow* const axis = &frames[3 * r];
       const auto along = hn::MulAdd(
@@ -45,7 +45,7 @@ void multiply_rows(std::size_t rows, const float* f, std::size_t plane, const fl
   for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
     const auto factor = hn::LoadU(d, cosine + i);
     for (std::size_t r = 0; r < rows; ++r) {
-      // The comparison is false for not-a-number, which so stays; Min would lose it.
+      // The comparison is false for not-a-number, which therefore stays; Min would lose it.
       const auto value = hn::Mul(hn::LoadU(d, f + r * plane + i), factor);
       hn::StoreU(hn::IfThenElse(hn::Gt(value, limit), limit, value), d, product + r * kTexelLanes + i);
     }
@@ -87,7 +87,7 @@ void omega_of(float exposure, float floor, const float* at, const float* share, 
   }
 }
 
-/// Of `kLobes` lobes, so that sums stay in registers; 0: of any number.
+/// Implements find_normal_equations for `kLobes` lobes, so that sums stay in registers; 0: for any number.
 template <std::size_t kLobes>
 void equations_of(const TexelPictures& pictures, const TexelPass& pass, const TexelRow* weights, float* trust,
                   TexelRow* matrix, TexelRow* vector) {
@@ -110,14 +110,14 @@ void equations_of(const TexelPictures& pictures, const TexelPass& pass, const Te
       const float* const model = pictures.model + k * lobes * stride + i;
       const float* const values = pictures.value + k * stride + i;
       const auto there = hn::LoadU(d, pictures.there + k * kTexelLanes + i);
-      // Each channel counts by omega, as find_omega says, and the pixel is doubted by its worst channel.
+      // Each channel counts by omega, as in find_omega. The channel with the largest error decides the pixel's trust.
       V omega[kChannels];
       auto worst = zero;
       for (std::size_t c = 0; c < pictures.channels; ++c) {
         const auto value = hn::LoadU(d, values + c * kTexelLanes);
         auto at = value, share = there, rest = zero;
         if (!pass.of_measured) {
-          // Omega is taken midway between what was measured and what the weights of the pass before give.
+          // Omega is taken midway between the measured value and the model of the previous pass.
           auto total = zero;
           for (std::size_t j = 0; j < lobes; ++j)
             total = hn::MulAdd(weight[j], hn::LoadU(d, model + j * stride + c * kTexelLanes), total);
@@ -132,7 +132,7 @@ void equations_of(const TexelPictures& pictures, const TexelPass& pass, const Te
         const auto x = hn::Max(hn::Mul(exposure, at), floor);
         omega[c] = hn::Div(hn::Mul(scale, share), hn::Mul(x, hn::Max(one, hn::Mul(x, x))));
         if (pass.of_measured) continue;
-        // What is brighter than the model is doubted less than what is darker, as shadows are.
+        // Shadows are dark, so an error towards brighter counts less than one towards darker.
         const auto counts = hn::IfThenElse(hn::Lt(rest, zero), one, brighter);
         worst = hn::Max(worst, hn::Mul(hn::Mul(hn::Mul(counts, omega[c]), rest), rest));
       }
@@ -143,7 +143,7 @@ void equations_of(const TexelPictures& pictures, const TexelPass& pass, const Te
         trusted = hn::IfThenElse(hn::Gt(there, zero), hn::Div(one, hn::Mul(doubt, doubt)), zero);
         hn::StoreU(trusted, d, trust + k * kTexelLanes + i);
       }
-      // The matrix gains omega times products of two lobes, the right side omega times a lobe and the value.
+      // The matrix gains omega times products of two lobes; the right side gains omega times a lobe and the value.
       for (std::size_t c = 0; c < pictures.channels; ++c) {
         const auto value = hn::LoadU(d, values + c * kTexelLanes), counts = hn::Mul(omega[c], trusted);
         std::size_t at = 0;
@@ -174,7 +174,7 @@ void all_equations(const TexelPictures& pictures, const TexelPass& pass, const T
   find(pictures, pass, weights, trust, matrix, vector);
 }
 
-// Of texels side by side, in double: the unknowns of one texel stand in a lane.
+// The unknowns of texels side by side, in double. Each texel stands in a lane.
 struct TexelUnknowns {
   using D64 = hn::CappedTag<double, kTexelLanes>;
   using V = hn::Vec<D64>;
@@ -189,13 +189,13 @@ struct TexelUnknowns {
 
   HWY_INLINE V matrix(std::size_t r, std::size_t c) const { return r < c ? a[c][r] : a[r][c]; }
 
-  /// The least for the free unknowns, by Cholesky; 0 of the others.
+  /// Finds the minimum over the free unknowns, by Cholesky; the other unknowns are 0.
   HWY_INLINE void solve_free() {
     const D64 d;
     const V one = hn::Set(d, 1.0), least = hn::Set(d, kMinSquare);
     V factor[kMax][kMax], inverse[kMax];
-    // The matrix is L L^T: each row of L is found, and at once what L y = b has for it. An unknown that is not free
-    // has a row of the identity and 0 on the right, so that lanes with other free unknowns take the same way.
+    // The matrix is L L^T. Each row of L is found together with its element of y, where L y = b. An unknown that is
+    // not free has a row of the identity and 0 on the right, so that all lanes take the same steps.
     for (std::size_t r = 0; r < n; ++r) {
       V rest = hn::IfThenElseZero(free[r], b[r]);
       for (std::size_t c = 0; c < r; ++c) {
@@ -218,19 +218,21 @@ struct TexelUnknowns {
     for (std::size_t r = 0; r < n; ++r) solution[r] = hn::IfThenElseZero(free[r], solution[r]);
   }
 
-  /// Whether the solution is the least of all w >= 0, and below `most`; sets free what should be.
+  /// Sets free the unknowns that should be. True in lanes whose solution is the minimum over all w >= 0 and below
+  /// `most`.
   HWY_INLINE M exchange(double most) {
     const D64 d;
     const V zero = hn::Zero(d);
     M good = hn::Eq(zero, zero);
     for (std::size_t r = 0; r < n; ++r) {
-      // How fast the sum falls where this unknown grows: b - A w.
+      // The slope b - A w is the rate at which the sum falls when this unknown grows.
       V slope = b[r];
       for (std::size_t c = 0; c < n; ++c) slope = hn::NegMulAdd(matrix(r, c), solution[c], slope);
-      // Karush, Kuhn and Tucker's conditions: a free unknown is positive, and for one at 0 the sum does not fall.
+      // The conditions of Karush, Kuhn and Tucker: a free unknown is positive, and the sum does not fall along one at
+      // 0.
       const M level = hn::Le(slope, hn::Mul(hn::Set(d, kMinSlope), hn::Abs(b[r])));
       const M stays = hn::Or(hn::And(free[r], hn::Gt(solution[r], zero)), hn::AndNot(free[r], level));
-      // Whatever breaks its condition changes sides, all at once [PortugalJudiceVicente1994].
+      // All unknowns that break their condition change sides at once [PortugalJudiceVicente1994].
       free[r] = hn::Xor(free[r], hn::Not(stays));
       good = hn::And(good, hn::And(stays, hn::Lt(solution[r], hn::Set(d, most))));
     }
@@ -240,15 +242,15 @@ struct TexelUnknowns {
 
 std::uint32_t weights_of(std::size_t lobes, const TexelRow* matrix, const TexelRow* vector, double ridge,
                          bool near, TexelRow* weights) {
-  constexpr int kTurns = 8;             // few texels take more than four
-  constexpr double kMostWeight = 1e30;  // beyond it the other solver answers
+  constexpr int kTurns = 8;             // few texels need more than four
+  constexpr double kMostWeight = 1e30;  // larger weights are left to solve_nonnegative
   const TexelUnknowns::D64 d;
   const hn::Rebind<float, TexelUnknowns::D64> d32;
   using V = TexelUnknowns::V;
   std::uint32_t found = 0;
   TexelUnknowns unknowns{.n = lobes};
   for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
-    // The equations of each texel are taken in double: their squares span more than floats resolve.
+    // The equations are solved in double: their squares span a wider range than floats resolve.
     V trace = hn::Zero(d), weight[TexelUnknowns::kMax];
     for (std::size_t r = 0, at = 0; r < lobes; ++r) {
       for (std::size_t c = 0; c <= r; ++c, ++at)
@@ -258,14 +260,14 @@ std::uint32_t weights_of(std::size_t lobes, const TexelRow* matrix, const TexelR
       trace = hn::Add(trace, unknowns.a[r][r]);
       unknowns.free[r] = near ? hn::Gt(weight[r], hn::Zero(d)) : hn::Eq(hn::Zero(d), hn::Zero(d));
     }
-    // A ridge in proportion to the mean diagonal tells lobes apart that are alike.
+    // A ridge in proportion to the mean diagonal separates lobes that are alike.
     const V added = hn::MulAdd(hn::Set(d, ridge / static_cast<double>(lobes)), trace, hn::Set(d, 1e-30));
     for (std::size_t r = 0; r < lobes; ++r) unknowns.a[r][r] = hn::Add(unknowns.a[r][r], added);
-    // The trace, with 0 times each right side added, is finite where the diagonal and all of these are.
+    // The trace plus 0 times each right side is finite if the diagonal and all right sides are.
     V together = trace;
     for (std::size_t r = 0; r < lobes; ++r) together = hn::MulAdd(hn::Zero(d), unknowns.b[r], together);
     const auto sound = hn::IsFinite(together);
-    // Turns go on until all texels are done. A texel keeps the weights of the turn that was its last.
+    // Turns go on until all texels are done. A texel keeps the weights of its last turn.
     auto done = hn::Not(sound);
     for (int turn = 0; turn < kTurns && !hn::AllTrue(d, done); ++turn) {
       unknowns.solve_free();
@@ -274,7 +276,7 @@ std::uint32_t weights_of(std::size_t lobes, const TexelRow* matrix, const TexelR
         weight[r] = hn::IfThenElse(hn::AndNot(done, good), unknowns.solution[r], weight[r]);
       done = hn::Or(done, good);
     }
-    // Weights of texels that are not done are stored as they were; a bit each says which are.
+    // Texels that are not done keep their old weights. One bit a texel says which are done.
     for (std::size_t r = 0; r < lobes; ++r)
       hn::StoreU(hn::DemoteTo(d32, weight[r]), d32, weights[r].data() + i);
     std::uint8_t bits[8] = {};
@@ -289,7 +291,7 @@ void seen_of(float exposure, const float* value, float* seen) {
   constexpr float kGrey = 1 / 2.2f, kMin = 1e-30f;
   const auto one = hn::Set(d, 1.0f), least = hn::Set(d, kMin), e = hn::Set(d, exposure);
   for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
-    // x^(1/2.2) = exp(log(x) / 2.2), of an x that has a logarithm; 0 below that.
+    // x^(1/2.2) = exp(log(x) / 2.2). The result is 0 if x is too small for its logarithm.
     const auto x = hn::Min(hn::Mul(e, hn::LoadU(d, value + i)), one);
     const auto root = hn::Exp(d, hn::Mul(hn::Set(d, kGrey), hn::Log(d, hn::Max(x, least))));
     hn::StoreU(hn::IfThenElse(hn::Gt(x, least), root, hn::Zero(d)), d, seen + i);

@@ -17,7 +17,7 @@
 namespace burnish {
 namespace {
 
-constexpr float kUntouched = -77;  // of what a kernel has to leave alone
+constexpr float kUntouched = -77;  // a value that kernels must not change
 constexpr std::size_t kLaneChannels = 3;
 
 std::vector<float> some_floats(std::size_t count, float least, float most, Pcg32& random) {
@@ -35,7 +35,8 @@ void expect_close(float found, double expected, double relative, const std::stri
   EXPECT_NEAR(static_cast<double>(found), expected, relative * (std::abs(expected) + 1e-6)) << where;
 }
 
-// Unit vectors and others, into rows that stand side by side or apart. Floats between the rows are left alone.
+// Vectors of length 1 and others turn into rows that are side by side or apart. Floats between the rows do not
+// change.
 TEST(TexelLanes, VectorsTurnIntoFramesAsOneByOne) {
   Pcg32 random(11);
   for (const bool any_length : {false, true})
@@ -122,7 +123,8 @@ TEST(TexelLanes, SumsAreOfAllLobes) {
     }
 }
 
-/// As the header says of find_omega: the square of d (x^(1/2)) / d value, above 1 that of 1 over x^2, times the share.
+/// Computes find_omega by the definition in its header: the square of d (x^(1/2)) / d value, from 1 on over x^2,
+/// times the share.
 double plain_omega(double exposure, double floor, double at, double share) {
   const double x = std::max(exposure * at, floor);
   const double slope = x < 1 ? 0.5 * exposure / std::sqrt(x) : 0.5 * exposure / (x * std::sqrt(x));
@@ -150,7 +152,7 @@ TEST(TexelLanes, OmegaIsTheSquareOfTheRootsSlope) {
     }
 }
 
-// Pictures at random, some of whose pixels are missing or clipped.
+// Pictures at random with some missing and some clipped pixels.
 struct SomePictures {
   std::size_t lobes, channels, pictures;
   std::vector<float> model, value, there, clipped;
@@ -178,7 +180,7 @@ struct SomePictures {
   }
 };
 
-// The sums of one texel by the definition of TexelPass, in double.
+// The sums of one texel, by the definition of TexelPass, in double.
 struct PlainEquations {
   std::vector<double> matrix, vector, trust;
 
@@ -251,7 +253,7 @@ void expect_plain_equations(const SomePictures& some, bool of_measured, bool cli
   EXPECT_EQ(trust.back(), kUntouched);
 }
 
-// Every number of lobes, some of which have a kernel of their own.
+// All numbers of lobes are tried; some of them have a kernel of their own.
 TEST(TexelLanes, NormalEquationsAreSumsOverPicturesAndChannels) {
   Pcg32 random(16);
   for (std::size_t lobes = 1; lobes <= kMaxSurfaceLobes; ++lobes)
@@ -263,7 +265,7 @@ TEST(TexelLanes, NormalEquationsAreSumsOverPicturesAndChannels) {
     }
 }
 
-// Equations side by side, as find_normal_equations gives them, and where each lane is not finite.
+// Equations side by side, in the layout of find_normal_equations, some of which are not finite.
 struct SomeEquations {
   std::vector<TexelRow> matrix, vector, weights;
 };
@@ -287,7 +289,7 @@ SomeEquations some_equations(std::size_t n, Pcg32& random) {
   return some;
 }
 
-/// What find_weights solves in one lane: the whole matrix, with the ridge, and the right side.
+/// The equations that find_weights solves in one lane: the whole matrix, with the ridge, and the right side.
 std::pair<std::vector<double>, std::vector<double>> equations_of_lane(const SomeEquations& some, double ridge,
                                                                       std::size_t lane) {
   const std::size_t n = some.vector.size();
@@ -303,8 +305,9 @@ std::pair<std::vector<double>, std::vector<double>> equations_of_lane(const Some
   return {a, b};
 }
 
-/// The least of w' a w / 2 - b' w with w >= 0: of the solutions with some unknowns free and the others 0, that with the
-/// least sum among those without a negative unknown. By elimination, one subset of the unknowns after the other.
+/// Returns the minimum of w' a w / 2 - b' w with w >= 0. Each subset of the unknowns is set free in turn, with the
+/// others at 0, and solved by elimination. The result is the solution with the least sum among those without a
+/// negative unknown.
 std::vector<double> least_of_all_subsets(const std::vector<double>& a, const std::vector<double>& b) {
   const std::size_t n = b.size();
   std::vector<double> best(n);
@@ -330,7 +333,7 @@ std::vector<double> least_of_all_subsets(const std::vector<double>& a, const std
     for (std::size_t i = 0; i < m; ++i) {
       w[free[i]] = rows[i][m] / rows[i][i];
       lowest = std::min(lowest, w[free[i]]);
-      sum -= b[free[i]] * w[free[i]] / 2;  // as a w = b there
+      sum -= b[free[i]] * w[free[i]] / 2;  // since a w = b there
     }
     if (lowest < 0 || sum >= least) continue;
     least = sum;

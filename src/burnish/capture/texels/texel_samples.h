@@ -16,7 +16,7 @@ struct TexelSamples {
   std::size_t pictures = 0;
   std::vector<float> values;       ///< f cos(theta_i), [picture][texel][channel], three channels
   std::vector<PixelState> states;  ///< [picture][texel]
-  /// Unit vectors towards light and view, [picture][texel][6]; empty: as the form's stations say.
+  /// Unit vectors towards light and view, [picture][texel][6]; empty: the form's stations tell them.
   std::vector<float> directions = {};
 
   std::size_t size() const noexcept { return texels.size(); }
@@ -28,9 +28,9 @@ struct TexelSamples {
   }
 };
 
-/// The same of all texels of some rows.
+/// Returns the samples of all texels of some rows.
 TexelSamples samples_of(CaptureRows rows);
-/// Every step-th texel from the first on.
+/// Returns every step-th texel from the first on.
 TexelSamples every(const TexelSamples& all, std::size_t step);
 
 }  // namespace burnish

@@ -16,16 +16,16 @@ TexelSolver::TexelSolver(const FactoredBrdf& lobes, const CaptureForm& form, dou
 
 namespace {
 
-// Texels that one thread takes, block by block in what is allocated once.
+// The texels that one thread takes at a time. Its blocks share one allocation.
 constexpr std::size_t kChunk = 8 * kTexelLanes;
 
-/// The squared errors of one picture of a block, as they are seen.
+/// Adds the squared errors of one picture of a block, as they are seen.
 void add_errors(const TexelBlock& block, std::size_t k, const TexelSamples& samples, float exposure,
                 TexelSolver::PictureError& error) {
   const std::size_t count = block.range().count;
   std::array<TexelRow, kCaptureChannels> seen, shown;
   for (std::size_t c = 0; c < kCaptureChannels; ++c) {
-    // What took the picture would have clipped the model too.
+    // The camera would have clipped the model at the same value.
     const TexelRow& measured = block.measured(k, c);
     TexelRow model = block.modelled(k, c);
     for (std::size_t i = 0; i < count; ++i)
@@ -51,7 +51,7 @@ void add_errors(const TexelBlock& block, std::size_t k, const TexelSamples& samp
   }
 }
 
-/// Keeps what was found of a block's texels.
+/// Keeps the results of a block's texels.
 void keep(TexelBlock& block, const TexelSolver::Options& options, TexelFits& fits) {
   const auto [first, count] = block.range();
   const std::size_t lobes = block.lobes();
@@ -85,7 +85,7 @@ TexelFits TexelSolver::solve(const TexelSamples& samples, std::vector<float> nor
     NormalSteps steps(*block);
     for (std::size_t first = begin; first < end; first += kTexelLanes) {
       block->begin({.first = first, .count = std::min(kTexelLanes, end - first)}, xy);
-      // Normals are found from weights of a first pass, and the other passes go by them.
+      // Normals start from the weights of a first pass, and the other passes use these normals.
       block->fit_weights(options.normals ? 1 : options.passes, 0);
       if (options.normals) {
         steps.run(xy, options.normal_steps);

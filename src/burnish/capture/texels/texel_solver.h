@@ -12,42 +12,42 @@
 
 namespace burnish {
 
-/// What is known of texels, or found.
+/// Values that are known of texels, or found.
 struct TexelFits {
   std::vector<float> weights;  ///< [texel][lobe], >= 0
   std::vector<float> normals;  ///< x and y, [texel][2]
-  /// How much a pixel counts, in [0, 1]: 0 where it is missing or clipped as it should be, little where it lies far
-  /// from the model; [picture][texel], 0 of held-out pictures. Empty unless asked for.
+  /// The trust in each pixel, in [0, 1]; [picture][texel], 0 for held-out pictures. It is 0 for missing pixels and
+  /// for clipped ones below the model, and small for pixels far from the model. Empty unless asked for.
   std::vector<float> trust;
-  /// What is left of each texel's errors, as they count; empty unless asked for.
+  /// The remaining cost of each texel's errors; empty unless asked for.
   std::vector<double> costs;
 };
 
-/// Fits weights, and normals if asked for, of texels whose lobes are known. What is minimized is the squared error of
-/// pixels as they are seen, about (exposure f cos)^(1/2), each pixel weighted by what it deserves: errors beyond a few
-/// percent of white count less and less (weights of [GemanMcClure1987]), so that shadows and misregistered edges do not
-/// lead. Clipped pixels count where the model is below them. Texels are independent: the same bits for any number of
-/// threads and any cut into blocks.
+/// Fits weights, and normals if asked for, of texels whose lobes are known. It minimizes the squared errors of pixels
+/// as they are seen, about (exposure f cos)^(1/2). Errors beyond a few percent of white count less and less (weights
+/// of [GemanMcClure1987]), so that shadows and misregistered edges have little influence. Clipped pixels count if the
+/// model is below them. Texels are independent: the result has the same bits for any number of threads and any cut
+/// into blocks.
 class TexelSolver {
  public:
-  /// Lobes of three channels, at most kMaxSurfaceLobes. `exposure` makes white 1.
+  /// Takes lobes of three channels, at most kMaxSurfaceLobes. `exposure` makes white 1.
   TexelSolver(const FactoredBrdf& lobes, const CaptureForm& form, double exposure);
 
   struct Options {
     int passes = 3;        ///< of reweighted least squares
-    bool normals = false;  ///< find them too, from those given
-    int normal_steps = 4;  ///< of Gauss and Newton, each followed by weights
+    bool normals = false;  ///< find normals too, from those given
+    int normal_steps = 4;  ///< Gauss-Newton steps, each followed by a fit of weights
     bool trust = false;    ///< fill TexelFits::trust
     bool costs = false;    ///< fill TexelFits::costs
   };
   TexelFits solve(const TexelSamples& samples, std::vector<float> normals, const Options& options) const;
 
-  /// Squared differences of min(1, exposure f cos)^(1/2.2), each to 1e-6, of pictures and model, over channels; where a
-  /// picture's channel is clipped, the model is clipped at its value too, as what took the picture would have done. In
-  /// units of kUnit: integers add up to the same in any order.
+  /// Squared differences of min(1, exposure f cos)^(1/2.2) between pictures and model, summed over channels, each to
+  /// 1e-6. If a picture's channel is clipped, the model is clipped at the same value, as the camera would have done.
+  /// The sums are integers in units of kUnit, so that they do not depend on the order.
   struct PictureError {
     static constexpr double kUnit = 0x1p-32;
-    std::uint64_t seen = 0, all = 0;              ///< over pixels not masked, and over all that are there
+    std::uint64_t seen = 0, all = 0;              ///< over unmasked pixels, and over all that have values
     std::uint64_t seen_count = 0, all_count = 0;  ///< values, three a pixel
 
     PictureError& operator+=(const PictureError& other) noexcept {
@@ -67,7 +67,7 @@ class TexelSolver {
       return static_cast<double>(sum) * kUnit / static_cast<double>(count);
     }
   };
-  /// Of every picture; `all` counts what masks leave out too.
+  /// Returns the errors of every picture; `all` includes the pixels that masks leave out.
   std::vector<PictureError> errors(const TexelSamples& samples, const TexelFits& fits) const;
 
   std::size_t lobes() const noexcept { return evaluator_.lobes(); }

@@ -14,7 +14,7 @@
 namespace burnish {
 namespace {
 
-/// Pixels of texels with weights and normals at random, seen by `pictures` lights and views.
+/// Pixels of texels with random weights and normals, seen by `pictures` lights and views.
 struct Scene {
   FactoredBrdf lobes;
   CaptureForm form;
@@ -82,7 +82,7 @@ TEST(TexelSolver, RecoversWeightsOfKnownLobes) {
   }
 }
 
-// A twentieth of the pixels in shadow or torn off its place changes weights little.
+// Weights change little if a twentieth of the pixels is in shadow or misplaced.
 TEST(TexelSolver, IsNotLedByShadows) {
   Scene scene(70, 40, false, 0);
   const std::vector<float> lit = scene.samples.values;
@@ -104,10 +104,10 @@ TEST(TexelSolver, IsNotLedByShadows) {
   EXPECT_EQ(trusted, 0u);
 }
 
-// What is clipped says only how bright it is at least: taken for values, it would lead weights astray.
+// A clipped pixel is only a lower bound. If it were taken as a value, weights would be wrong.
 TEST(TexelSolver, TakesClippedPixelsForLowerBounds) {
   Scene scene(70, 40, false, 0), taken = scene;
-  // the brightest twentieth
+  // The brightest twentieth of the values is clipped.
   std::vector<float> sorted = scene.samples.values;
   const auto white = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * 19 / 20);
   std::ranges::nth_element(sorted, white);
@@ -150,7 +150,7 @@ TEST(TexelSolver, GivesTheSameBitsForAnyThreadsAndBlocks) {
     EXPECT_EQ(all.normals, again.normals);
     EXPECT_EQ(all.trust, again.trust);
   }
-  // the last 30 texels alone
+  // The last 30 texels are fitted alone.
   TexelSamples part{.texels = {scene.samples.texels.begin() + 40, scene.samples.texels.end()},
                     .pictures = scene.samples.pictures,
                     .values = {},
@@ -166,7 +166,7 @@ TEST(TexelSolver, GivesTheSameBitsForAnyThreadsAndBlocks) {
   EXPECT_TRUE(std::equal(some.normals.begin(), some.normals.end(), all.normals.begin() + 80));
 }
 
-// Of diffuse texels, a tenth of them in shadow or white, photometric stereo finds the normals.
+// Photometric stereo finds the normals of diffuse texels, a tenth of them in shadow or white.
 TEST(DiffuseNormals, AreNotLedByHighlights) {
   Scene scene(40, 40, true, 0);
   Pcg32 random(4);
@@ -183,7 +183,7 @@ TEST(DiffuseNormals, AreNotLedByHighlights) {
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], scene.truth.normals[i], 0.03);
 }
 
-// Diffuse texels of three colours and of their mixtures: each set is of one colour.
+// Texels are diffuse, of three colours and their mixtures. Each set has one colour.
 TEST(PureTexels, TellMaterialsFromTheirMixtures) {
   Scene scene(120, 30, false, 0);
   const auto colour_of = [](std::size_t t) { return t % 3; };

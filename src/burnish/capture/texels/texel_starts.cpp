@@ -21,8 +21,8 @@ constexpr double kGlossWidths[] = {0.08, 0.2, 0.45};  // alpha of GGX
 constexpr int kGlossNodes = 48;
 constexpr std::size_t kGroupsPerLobe = 12, kMaxTexelGroups = 96, kMinTexels = 24;
 
-/// The groups that stand out: the farthest from 0, and each next the farthest from the span of those before
-/// (successive projections [Araujo2001]). Small groups are of odd texels.
+/// Returns the groups that stand out: first the farthest from 0, then always the farthest from the span of the
+/// previous ones (successive projections [Araujo2001]). Small groups are skipped, since their texels are odd.
 std::vector<std::size_t> corners(const Groups& groups, std::size_t count, std::size_t least_size) {
   Points rest = groups.centres;
   std::vector<std::size_t> found;
@@ -40,7 +40,7 @@ std::vector<std::size_t> corners(const Groups& groups, std::size_t count, std::s
     }
     if (best == rest.size) {
       if (least_size == 0) break;
-      least_size = 0;  // rather odd ones than none
+      least_size = 0;  // odd groups are better than none
       continue;
     }
     found.push_back(best);
@@ -72,7 +72,7 @@ double exposure_of(const TexelSamples& samples, const CaptureForm& form) {
 
 std::vector<float> diffuse_normals(const TexelSamples& samples, const CaptureForm& form) {
   constexpr int kPasses = 8;
-  constexpr double kRound = 0.02, kMaxSlope = 0.866;  // the first of the mean value
+  constexpr double kRound = 0.02, kMaxSlope = 0.866;  // kRound is a share of the mean value
   std::vector<float> normals(2 * samples.size());
   for_each_chunk(samples.size(), 64, [&](std::size_t, std::size_t begin, std::size_t end) {
     struct Row {
@@ -94,7 +94,7 @@ std::vector<float> diffuse_normals(const TexelSamples& samples, const CaptureFor
       }
       if (rows.size() < 4) continue;
       mean /= static_cast<double>(rows.size());
-      // albedo times normal, by least squares reweighted towards least absolute errors
+      // The unknowns are albedo times normal. Least squares are reweighted towards least absolute errors.
       Eigen::Vector3d b(0, 0, mean);
       for (int pass = 0; pass < kPasses; ++pass) {
         Eigen::Matrix3d a = 1e-9 * Eigen::Matrix3d::Identity();
@@ -126,7 +126,7 @@ FactoredBrdf general_lobes() {
     lobes.push_back(diffuse);
   }
   for (const double alpha : kGlossWidths) {
-    // the shape of GGX's distribution [Walter2007], 1 at the normal
+    // The table has the shape of GGX's distribution [Walter2007], 1 at the normal.
     Table table{.name = fmt::format("d{}", tables.size()),
                 .layout = {.width = kGlossNodes, .warp = {WarpKind::power, 0.5}, .warp_y = {}, .warp_z = {}},
                 .channels = 1,
@@ -155,7 +155,7 @@ std::vector<std::vector<std::size_t>> pure_texels(const TexelSamples& samples, c
   const TexelSolver solver(general_lobes(), form, exposure);
   const TexelFits fits = solver.solve(samples, normals, {.passes = 2});
 
-  // shares of each lobe, so that mixtures lie between what they are made of
+  // The points are the shares of each lobe, so that mixtures lie between their parts.
   Points points{samples.size(), solver.lobes(),
                 std::vector<double>(fits.weights.begin(), fits.weights.end())};
   std::vector<double> mean(points.coordinates);
@@ -177,7 +177,7 @@ std::vector<std::vector<std::size_t>> pure_texels(const TexelSamples& samples, c
   const std::size_t least = std::max<std::size_t>(3, points.size / (8 * group_count));
   std::vector<std::vector<std::size_t>> sets;
   for (const std::size_t g : corners(groups, std::min(count, group_count), least)) {
-    // the texels nearest to the group's centre
+    // A set is the texels nearest to the group's centre.
     std::vector<std::size_t> order(points.size);
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::vector<double> far(points.size);

@@ -9,22 +9,22 @@
 
 namespace burnish {
 
-/// 1 / the 97th percentile of the pixels that are fitted; 1 where that is 0.
+/// Returns 1 / the 97th percentile of the fitted pixels; 1 if that is 0.
 double exposure_of(const TexelSamples& samples, const CaptureForm& form);
 
-/// x and y of texels' normals as if they were diffuse, [texel][2]: photometric stereo [Woodham1980] on the mean of the
-/// channels, with the least sum of absolute errors, which highlights and shadows lead little. Normals stay within 60
-/// degrees of the surface's.
+/// Returns x and y of texels' normals as if they were diffuse, [texel][2]. The method is photometric stereo
+/// [Woodham1980] on the mean of the channels. It minimizes the sum of absolute errors, on which highlights and
+/// shadows have little influence. Normals stay within 60 degrees of the surface's.
 std::vector<float> diffuse_normals(const TexelSamples& samples, const CaptureForm& form);
 
-/// K sets of texels of which each looks like one material: texels grouped by what general lobes (a diffuse one and
-/// glossy ones of several widths, in each channel) make of them, the groups that no mixture of others resembles first.
-/// Every set has at least one texel. Deterministic.
+/// Returns K sets of texels, each of which looks like one material. Texels are described by the weights of general
+/// lobes (a diffuse one and glossy ones of several widths, in each channel), and grouped by them. The groups that no
+/// mixture of other groups resembles come first. Every set has at least one texel. The result is deterministic.
 std::vector<std::vector<std::size_t>> pure_texels(const TexelSamples& samples, const CaptureForm& form,
                                                   const std::vector<float>& normals, double exposure,
                                                   std::size_t count);
 
-/// The general lobes that texels are described by, three channels, each in one channel alone.
+/// The general lobes that describe texels: three channels, each lobe in one channel alone.
 FactoredBrdf general_lobes();
 
 }  // namespace burnish

@@ -22,7 +22,7 @@ TEST(Exposure, IsOfWhatIsFittedAndThere) {
   samples.values.insert(samples.values.end(), 3, 100.0f);
   samples.states[kTexels] = PixelState::missing;
   samples.values.insert(samples.values.end(), 3 * (kTexels + 1), 100.0f);  // held out
-  // three of each: place 0.97 * 299 = 290.03 is between the last 0.97 and the first 0.98
+  // There are three values of each; place 0.97 * 299 = 290.03 lies between the last 0.97 and the first 0.98.
   EXPECT_NEAR(exposure_of(samples, form), 1 / 0.9703, 1e-6);
   std::ranges::fill(samples.values, 0.0f);
   EXPECT_EQ(exposure_of(samples, form), 1);
