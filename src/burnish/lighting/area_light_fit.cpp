@@ -32,7 +32,7 @@ void check(BrdfRef brdf, const AreaLightFitOptions& options) {
     throw Error(fmt::format("area lights: expected iterations >= 1, found {}", options.iterations));
 }
 
-// Mean difference from the mirror image along x, over the mean.
+// True if the mean difference from the mirror image along x is small relative to the mean.
 bool is_mirror_image(BrdfRef brdf) {
   Pcg32 random(5);
   std::vector<double> f(brdf.channels()), g(brdf.channels());
@@ -93,7 +93,7 @@ class TableFit {
     nodes_[middle] = best_start(middle);
     for (std::size_t t = middle + 1; t < table_.thetas; ++t) advance(t, t - 1);
     for (std::size_t t = middle; t-- > 0;) advance(t, t + 1);
-    // azimuths one after another; views along the normal are the same, turned
+    // Azimuths follow one after another. Views along the normal are the same, but turned.
     for (std::size_t a = 1; a < table_.azimuths; ++a) {
       nodes_[at(a, 0)] = turned(nodes_[0], phi_of(node_view(table_, a, 1)));
       for (std::size_t t = 1; t < table_.thetas; ++t) advance(at(a, t), at(a - 1, t));
@@ -116,7 +116,7 @@ class TableFit {
       options_.progress(std::min(1.0, done_ / (3.0 * static_cast<double>(nodes_.size()))));
   }
 
-  // One exposure for all views: the median of those away from the horizon.
+  // All views share one exposure: the median over those away from the horizon.
   void share_whites() {
     for (std::size_t size = 0; size < kTrialSizes.size(); ++size) {
       std::vector<double> whites;
@@ -127,7 +127,7 @@ class TableFit {
     }
   }
 
-  // Minimizations from lobes of random widths and tilts; a few steps tell which to go on with.
+  // Finds the best of several starts with random widths and tilts. A few steps from each tell which one to continue.
   NodeLobes best_start(std::size_t node) const {
     const NodeTarget& target = targets_[node];
     constexpr int kStarts = 24;
@@ -163,7 +163,7 @@ class TableFit {
     told();
   }
 
-  // Towards the mean of the neighbours along theta_o.
+  // Refits each node with a pull towards the mean of its neighbours along theta_o.
   void smooth() {
     for (std::size_t a = 0; a < table_.azimuths; ++a)
       for (std::size_t t = table_.azimuths > 1 ? 1 : 0; t < table_.thetas; ++t) {
@@ -185,12 +185,13 @@ class TableFit {
     return a;
   }
 
-  // The lobes of a view along the normal in a frame whose x lies at azimuth phi.
+  // The lobes of a view along the normal, in a frame whose x lies at azimuth phi.
   static NodeLobes turned(NodeLobes node, double phi) {
     const double c = std::cos(phi), s = std::sin(phi);
     for (NodeLobes::Lobe& lobe : node.lobes) {
       auto b = lobe.inverse;
-      // columns, then rows alike, which changes nothing but keeps the matrix near its neighbours
+      // Columns are turned, then rows. Turning rows does not change the lobe, but keeps the matrix near its
+      // neighbours.
       for (std::size_t i = 0; i < 3; ++i) {
         const double x = b[3 * i], y = b[3 * i + 1];
         b[3 * i] = c * x + s * y;
@@ -206,7 +207,7 @@ class TableFit {
     return node;
   }
 
-  // Matrices are rounded before heights are scaled, so that albedos are those of what is stored.
+  // Rounds matrices before heights are scaled, so that albedos belong to the stored values.
   AreaLightTable finish() {
     table_.lobes.resize(options_.lobes);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {

@@ -19,7 +19,8 @@ namespace {
 
 constexpr int kTextureNumber = 8;
 
-// Rows of the texture a table's quantities take: the plain cosine's height, then of each lobe the matrix and the height.
+// The number of texture rows of a lobe, for its matrix and height. The plain cosine's height comes first in the
+// texture.
 int rows_a_lobe(const AreaLightTable& table) noexcept {
   return table.views == AreaLightViews::line ? 3 : 4;
 }
@@ -51,14 +52,14 @@ ShaderTexture area_texture(const AreaLightTable& table, const std::string& name)
   return texture;
 }
 
-// Where a view's node is, as texture coordinates, and the frame of its mirrored view.
+// Finds the texture coordinates of a view's node, and the frame of its mirrored view.
 class ShaderView {
  public:
   ShaderView(const AreaLightTable& table, const ShaderTexture& texture)
       : table_(table), texture_(texture), x_(wo_), y_(wo_) {
     const Expr sine = named("sin_o", sqrt(max(wo_.x * wo_.x + wo_.y * wo_.y, 0.0)));
     const Expr over = named("over", Expr(1.0) / max(sine, 1e-6)), normal = Expr(1e-6);
-    // at the normal x is the tangent
+    // At the normal x is the tangent.
     const Expr cx = named("cos_phi", if_less(sine, normal, 1.0, wo_.x * over));
     const Expr cy = named("sin_phi", if_less(sine, normal, 0.0, wo_.y * over));
     const Expr side =
@@ -70,14 +71,14 @@ class ShaderView {
     azimuth_ = named("azimuth", azimuth());
   }
 
-  // Three numbers of a quantity.
+  // Reads three numbers of a quantity.
   ExprVector read(int quantity, const char* called) const {
     const auto azimuths = static_cast<double>(table_.azimuths);
     const double height = texture_.height;
     const Expr v = azimuth_ * ((azimuths - 1) / height) + (quantity * azimuths + 0.5) / height;
     return ExprVector(named(called, Expr::sample(texture_.name, {u_, v}, ValueType::vector)));
   }
-  // A vector of the local frame in that of the mirrored view.
+  // Turns a vector of the local frame into the frame of the mirrored view.
   ExprVector in_frame(const ExprVector& w) const { return {dot(x_, w), dot(y_, w), dot(mirror(wo_), w)}; }
 
  private:

@@ -8,7 +8,7 @@ namespace burnish {
 
 namespace {
 
-// Two or four nodes and their weights.
+// Two or four nodes and their interpolation weights.
 struct NodeMix {
   std::array<std::size_t, 4> node{};
   std::array<double, 4> weight{};

@@ -13,7 +13,7 @@
 
 namespace burnish {
 
-/// Which views a table holds:
+/// The views that a table holds:
 /// - line: polar angles alone, of an isotropic BRDF that is its own mirror image;
 /// - quarter: azimuths from the tangent to the bitangent, of a BRDF that is its own mirror image along both;
 /// - full: all azimuths.
@@ -23,7 +23,8 @@ enum class AreaLightViews { line, quarter, full };
 struct AreaLobe {
   /// Nine values a node, rows of the matrix from the frame of the mirrored view to the cosine (see AreaLightTable).
   std::vector<float> inverse;
-  /// Three values a node, >= 0: what of a light all around the lobe would reflect, were none of it below the horizon.
+  /// Three values a node, >= 0. A uniform light of radiance 1 from all directions would reflect this much, if no part
+  /// of the lobe were below the horizon.
   std::vector<float> amplitude;
 };
 
@@ -33,11 +34,11 @@ struct ShadedLobe {
   Rgb amplitude;
 };
 
-/// What a BRDF makes of area lights: f_r cos(theta_i) for every view as a sum of a cosine and of transformed cosines
-/// [Heitz2016], found by fit_area_lights. Nodes are [azimuth][theta_o], theta_o faster. Node i of `thetas` stands at
-/// tan(theta_o / 2) = i / (thetas - 1); azimuths are evenly spaced in |y| / (|x| + |y|), both ends of a quarter included,
-/// of `full` in four such quarters, the last node the first again. The frame of the mirrored view has y at right angles
-/// to view and normal, and z along the view's mirror direction.
+/// The reflection of area lights by a BRDF. For every view, f_r cos(theta_i) is the sum of a cosine and of
+/// transformed cosines [Heitz2016], which fit_area_lights finds. Nodes are [azimuth][theta_o], theta_o faster. Node i
+/// of `thetas` stands at tan(theta_o / 2) = i / (thetas - 1). Azimuths are evenly spaced in |y| / (|x| + |y|). A
+/// quarter includes both ends; `full` has four quarters, and its last node is the first again. The frame of the
+/// mirrored view has y at right angles to view and normal, and z along the view's mirror direction.
 struct AreaLightTable {
   AreaLightViews views = AreaLightViews::line;
   std::size_t thetas = 0, azimuths = 1;  ///< thetas >= 2; azimuths 1 for a line
@@ -61,17 +62,17 @@ struct ShadedLobes {
   std::span<const ShadedLobe> all() const noexcept { return std::span(lobes).first(count); }
 };
 
-/// Linear between nodes, for a unit vector wo of the local frame above the horizon.
+/// Interpolates linearly between nodes, for a unit vector wo of the local frame above the horizon.
 ShadedLobes shaded_lobes(const AreaLightTable& table, Vec3 wo) noexcept;
 
-/// f_r cos(theta_i) as the table has it, 1/sr; zero below the horizon.
+/// The table's f_r cos(theta_i), 1/sr; zero below the horizon.
 Rgb reflected_density(const AreaLightTable& table, Vec3 wi, Vec3 wo) noexcept;
 
-/// The light reflected towards wo of a light all around of radiance 1.
+/// The radiance reflected towards wo from light of radiance 1 from all directions.
 Rgb albedo(const AreaLightTable& table, Vec3 wo) noexcept;
 
-/// The radiance reflected towards wo of a polygon of radiance 1 that shines to both sides; corners in order, relative to
-/// the point that is lit, of its local frame. Zero where wo is not above the horizon.
+/// The radiance reflected towards wo from a polygon of radiance 1 that shines to both sides. Corners are in order,
+/// relative to the lit point, in its local frame. Zero if wo is not above the horizon.
 Rgb reflected(const AreaLightTable& table, std::span<const Vec3> polygon, Vec3 wo);
 
 }  // namespace burnish

@@ -31,7 +31,7 @@ std::vector<Vec3> sphere_light(Vec3 centre, double radius, int corners) {
         fmt::format("sphere light: expected a radius in (0, {}), the distance, found {}", distance, radius));
   const Vec3 to = (1 / distance) * centre;
   const Vec3 u = normalize(cross(std::abs(to.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, to)), v = cross(to, u);
-  // tangent of the angle under which the radius is seen
+  // The size is the tangent of the angle between the centre and the sphere's rim.
   const double size = radius / std::sqrt(distance * distance - radius * radius);
   return disk_light(to, size * u, size * v, corners);
 }

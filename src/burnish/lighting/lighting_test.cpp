@@ -32,12 +32,12 @@ namespace {
 const TransformedCosine kLobe{{3, 0.4, -0.7, 0.2, 2, 0.5, 0.3, -0.2, 1}};
 const std::array<Vec3, 4> kSquare = rectangle_light({0.3, 0.2, 1.5}, {0.6, 0.1, 0}, {-0.1, 0.6, 0.2});
 
-// Small fits, which tests need no better.
+// Small fits, which are good enough for tests.
 AreaLightTable small_fit(const AnalyticBrdf& brdf, std::size_t lobes = 2) {
   return fit_area_lights(brdf, {.lobes = lobes, .thetas = 9, .polars = 5, .quarter = 3, .iterations = 15});
 }
 
-// Mean over a sphere of directions, stratified, times its solid angle.
+// The mean over stratified directions of the sphere, times its solid angle.
 template <class Value>
 double over_sphere(int side, const Value& value) {
   Pcg32 random(1);
@@ -51,7 +51,7 @@ double over_sphere(int side, const Value& value) {
   return 2 * kTwoPi * sum / (side * side);
 }
 
-// Whether the ray along w meets a rectangle.
+// True if the ray along w meets a rectangle.
 bool meets(const std::array<Vec3, 4>& corners, Vec3 w) {
   const Vec3 u = corners[1] - corners[0], v = corners[3] - corners[0], n = cross(u, v);
   const double t = dot(corners[0], n) / dot(w, n);
@@ -91,7 +91,7 @@ TEST(TransformedCosine, BehindTheHorizonIsDark) {
 }
 
 TEST(AreaLights, SphereIsSeenAsItsConeAndItsCosineIsKnown) {
-  // irradiance of a sphere in the zenith over pi: sin^2 of its half angle
+  // The irradiance over pi of a sphere in the zenith is sin^2 of its half angle.
   EXPECT_NEAR(cosine_share(sphere_light({0, 0, 2}, 1, 64)), 0.25, 0.25 * 7.0 / (64 * 64));
   EXPECT_NEAR(cosine_share(sphere_light({0, 0, 2}, 1, 16)), 0.25, 0.25 * 7.0 / (16 * 16));
   EXPECT_THROW(sphere_light({0, 0, 1}, 1), Error);
@@ -101,7 +101,7 @@ TEST(AreaLights, SphereIsSeenAsItsConeAndItsCosineIsKnown) {
 TEST(AreaLights, LineIsAThinRectangleThatFacesThePoint) {
   const double thin = cosine_share(line_light({-1, 0, 2}, {1, 0.5, 2}, 0.01));
   EXPECT_NEAR(cosine_share(line_light({-1, 0, 2}, {1, 0.5, 2}, 0.02)), 2 * thin, 1e-3 * thin);
-  // 1/pi times the integral along the line of cos(theta) 2 r sin(to the line) / distance^2
+  // The reference is 1/pi times the integral along the line of cos(theta) 2 r sin(to the line) / distance^2.
   double sum = 0;
   for (int i = 0; i < 2000; ++i) {
     const double t = (i + 0.5) / 2000;
@@ -129,7 +129,7 @@ TEST(AreaLightFit, AlbedoAtNodesIsThatOfTheBrdf) {
     EXPECT_NEAR(got.r, sum[0], 1e-4 * sum[0]);
     EXPECT_NEAR(got.g, sum[1], 1e-4 * sum[1]);
     EXPECT_NEAR(got.b, sum[2], 1e-4 * sum[2]);
-    // a light all around
+    // A very large rectangle acts as light from all directions.
     EXPECT_NEAR(reflected(table, rectangle_light({0, 0, 1}, {1e6, 0, 0}, {0, 1e6, 0}), wo).g, got.g,
                 1e-4 * got.g);
   }
@@ -142,7 +142,7 @@ TEST(AreaLightFit, LambertStaysLambert) {
   EXPECT_NEAR(reflected(table, kSquare, wo).g, 0.5 * cosine_share(kSquare), 0.01 * cosine_share(kSquare));
 }
 
-// f_r cos(theta_i) over a rectangle by its area.
+// Integrates f_r cos(theta_i) over a rectangle by its area.
 double brute_force(const AnalyticBrdf& brdf, const std::array<Vec3, 4>& lamp, Vec3 wo) {
   const Vec3 u = lamp[1] - lamp[0], v = lamp[3] - lamp[0], n = cross(u, v);
   constexpr int kSide = 300;
@@ -249,7 +249,7 @@ AreaLightTable made_table(AreaLightViews views) {
 constexpr const char* kCalls =
     "burnish_test_quad(a, a, a, a, a) + burnish_test_quad_world(a, a, a, a, a, a, a), 1.0)";
 
-// What makes a program of the functions.
+// Returns a main function that calls both functions.
 std::string main_of(ShaderLanguage language) {
   if (language == ShaderLanguage::hlsl || language == ShaderLanguage::slang)
     return fmt::format(
@@ -324,7 +324,7 @@ TEST(AreaLightShader, ComputesWhatTheTableSays) {
     }
     const std::vector<float> got = function.call(calls);
     for (std::size_t i = 0; i < calls.size(); ++i) {
-      // texture units weigh nodes with 8 bits
+      // Texture units interpolate between nodes with weights of 8 bits.
       EXPECT_NEAR(static_cast<double>(got[3 * i]), expected[i].r, 4e-3) << i;
       EXPECT_NEAR(static_cast<double>(got[3 * i + 2]), expected[i].b, 4e-3) << i;
     }

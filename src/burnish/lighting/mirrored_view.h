@@ -8,11 +8,12 @@
 
 namespace burnish {
 
-/// The frame that an AreaLightTable's matrices are of: y at right angles to view and normal, z along the mirrored view.
+/// The frame that the matrices of an AreaLightTable refer to: y at right angles to view and normal, z along the
+/// mirrored view.
 struct MirroredView {
   Vec3 x, y, z;
 
-  /// A table's matrix as one of the local frame.
+  /// Turns a table's matrix into one of the local frame.
   TransformedCosine of_local(const std::array<double, 9>& b) const noexcept {
     TransformedCosine local;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -25,8 +26,8 @@ struct MirroredView {
   }
 };
 
-/// Of a unit vector wo above the horizon. Where a table has a quarter of the views, y is turned round for those that are
-/// one mirror image away from it. At the normal x is the tangent.
+/// Returns the frame for a unit vector wo above the horizon. If a table has a quarter of the views, y is reversed for
+/// views that are one mirror image away from it. At the normal x is the tangent.
 inline MirroredView mirrored_view(Vec3 wo, AreaLightViews views) noexcept {
   const double sine = std::hypot(wo.x, wo.y);
   const Vec3 away = sine > 1e-12 ? Vec3{wo.x / sine, wo.y / sine, 0} : Vec3{1, 0, 0};
@@ -49,7 +50,7 @@ inline double azimuth_position(AreaLightViews views, Vec3 wo) noexcept {
   return 0.25 * (wo.x < 0 ? 2 + quarter : 4 - quarter);
 }
 
-/// The last node's polar angle, since nothing is seen from the horizon: 89 degrees.
+/// The last node's polar angle. It is 89 degrees, since nothing is seen from the horizon.
 inline constexpr double kLastTheta = radians(89);
 
 }  // namespace burnish

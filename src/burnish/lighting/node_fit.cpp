@@ -17,10 +17,11 @@ namespace {
 constexpr std::array<std::size_t, 5> kMirroredEntries{0, 2, 4, 6, 8};
 constexpr std::array<std::size_t, 9> kAllEntries{0, 1, 2, 3, 4, 5, 6, 7, 8};
 constexpr int kAzimuths = 96, kRadii = 192;
-// Solid angle of lamps that are white in a picture where 3 % of a sphere's pixels are.
+// Solid angle of the white lamps in a picture in which 3 % of a sphere's pixels are white.
 constexpr double kWhiteAngle = 0.35;
 
-// Where the parameters of a node's lobes stand: of every lobe the free entries, then its heights; last the cosine's.
+// The order of a node's parameters: for every lobe its free entries and then its heights, and last the cosine's
+// heights.
 struct Layout {
   std::span<const std::size_t> entries;
   std::size_t channels, lobes;
@@ -61,7 +62,7 @@ NodeLobes lobes_of(const Eigen::VectorXd& p, const Layout& layout, const NodeLob
   return node;
 }
 
-// Heights stay positive, and the cosine's row keeps its length: a matrix's size means nothing.
+// Keeps heights positive, and the cosine's row at unit length: a matrix's size has no effect.
 void settle(NodeLobes& node, const NodeTarget& target) {
   for (NodeLobes::Lobe& lobe : node.lobes) {
     const double size = std::hypot(lobe.inverse[6], lobe.inverse[7], lobe.inverse[8]);
@@ -80,7 +81,7 @@ double share_of(const TrialLamp& lamp, const std::array<double, 9>& inverse) {
   return cosine_share(std::span(seen).first(lamp.count));
 }
 
-// Steps of a matrix's entries, in proportion to its rows.
+// Steps of finite differences for a matrix's entries, in proportion to its rows.
 std::vector<double> steps_of(const std::array<double, 9>& b, std::span<const std::size_t> entries) {
   std::vector<double> steps;
   for (const std::size_t k : entries) {
@@ -95,7 +96,7 @@ class Model {
   Model(const NodeTarget& target, const Layout& layout, const std::array<Vec3, 3>& up)
       : target_(target), layout_(layout), up_(up) {}
 
-  // Values at every lamp and channel, and last the albedo of every channel.
+  // Returns values for every lamp and channel, and last the albedo of every channel.
   Eigen::VectorXd values(const NodeLobes& node, Eigen::MatrixXd* jacobian) const {
     const std::size_t channels = target_.channels, lamps = target_.lamps.size();
     Eigen::VectorXd values(static_cast<Eigen::Index>((lamps + 1) * channels));
@@ -151,7 +152,7 @@ class Model {
   std::array<Vec3, 3> up_;  // axes of the local frame in that of the mirrored view
 };
 
-// A value as it is shown, 1 where it is white; brighter ones still count a little.
+// A value as it is shown. 1 is white; brighter values still count a little.
 struct Shown {
   double value, slope;
 };
@@ -164,7 +165,7 @@ Shown shown(double x) {
 
 constexpr double kAlbedoWeight = 2;
 
-// Residuals of values; scales the rows of `jacobian` by their slopes where there is one.
+// Returns the residuals of values. Scales the rows of `jacobian`, if it is not null, by their slopes.
 Eigen::VectorXd residuals(const NodeTarget& target, const Eigen::VectorXd& values,
                           Eigen::MatrixXd* jacobian) {
   Eigen::VectorXd r(values.size());
@@ -189,7 +190,7 @@ Eigen::VectorXd residuals(const NodeTarget& target, const Eigen::VectorXd& value
   return r;
 }
 
-// How strongly each parameter is held near the neighbour's, over the options' weight.
+// The weight that holds each parameter near the neighbour's, relative to the options' weight.
 Eigen::VectorXd stiffness(const NodeLobes& near, const NodeTarget& target, const Layout& layout) {
   Eigen::VectorXd weight = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.size()));
   double albedo = 0;
@@ -210,8 +211,8 @@ Eigen::VectorXd stiffness(const NodeLobes& near, const NodeTarget& target, const
   return weight;
 }
 
-// f_r cos(theta_i) towards one view: at directions that crowd where half vectors near the normal lie, for wide lamps, and
-// anywhere.
+// f_r cos(theta_i) towards one view, at any direction. Wide lamps use fixed directions, which are dense where half
+// vectors lie near the normal.
 class Reflected {
  public:
   Reflected(BrdfRef brdf, Vec3 wo, const MirroredView& frame, bool halved)
@@ -242,11 +243,12 @@ class Reflected {
       for (std::size_t c = 0; c < 3; ++c) sum[c] += point.value[c];
     return sum;
   }
-  // Of a square lamp about the unit vector `to` of the mirrored view's frame, u and v half its sides at distance 1.
+  // Returns the reflection of a square lamp. Its centre is the unit vector `to` of the mirrored view's frame; u and v
+  // are half its sides at distance 1.
   std::array<double, 3> of_lamp(Vec3 to, Vec3 u, Vec3 v) const {
     std::array<double, 3> sum{};
     const double half = length(u);
-    if (to.z < std::cos(std::min(3.5 * half, kPi)) && half < 0.2) {  // smooth there
+    if (to.z < std::cos(std::min(3.5 * half, kPi)) && half < 0.2) {  // the BRDF is smooth there
       constexpr int kSide = 6;
       for (int i = 0; i < kSide; ++i)
         for (int k = 0; k < kSide; ++k) {
@@ -281,7 +283,7 @@ class Reflected {
   std::vector<Point> points_;
 };
 
-// Lamps of one size on rings about the mirrored view.
+// Adds lamps of one size on rings about the mirrored view.
 void add_lamps(NodeTarget& target, std::size_t size, const MirroredView& frame, const Reflected& reflected,
                bool halved) {
   constexpr int kRings = 18, kAround = 5;
@@ -302,7 +304,7 @@ void add_lamps(NodeTarget& target, std::size_t size, const MirroredView& frame, 
       TrialLamp lamp;
       lamp.size = size;
       lamp.weight = kTwoPi * (std::cos(low) - std::cos(high)) / around;
-      // clipped in the local frame
+      // The lamp is clipped in the local frame.
       std::array<Vec3, 4> local;
       for (std::size_t i = 0; i < 4; ++i) {
         const Vec3 w = to + (i == 1 || i == 2 ? 1.0 : -1.0) * u + (i >= 2 ? 1.0 : -1.0) * v;
@@ -321,7 +323,7 @@ void add_lamps(NodeTarget& target, std::size_t size, const MirroredView& frame, 
   }
 }
 
-// The value that kWhiteAngle sr of lamps and channels exceed.
+// Returns the value that lamps and channels of kWhiteAngle sr exceed.
 double white_of(std::span<const TrialLamp> lamps, std::size_t channels) {
   std::vector<std::pair<double, double>> values;
   for (const TrialLamp& lamp : lamps)

@@ -10,8 +10,9 @@
 
 namespace burnish {
 
-/// What shaders compute of a quadrilateral light, once for double and once for expression graphs. V is a vector of
-/// numbers T, with members x, y and z. Without branches: an edge that is cut or gone is selected.
+/// The shader's formulas for a quadrilateral light, written once for double and for expression graphs. V is a vector
+/// of numbers T, with members x, y and z. There are no branches: an edge that is cut or gone is selected by a
+/// condition.
 
 namespace scalar_select {
 inline double if_less(double a, double b, double x, double y) noexcept {
@@ -19,7 +20,7 @@ inline double if_less(double a, double b, double x, double y) noexcept {
 }
 }  // namespace scalar_select
 
-/// angle / sin(angle) of the cosine x in (-1, 1], within 5e-6 of itself for x >= 0.
+/// angle / sin(angle) for the cosine x in (-1, 1]. The relative error is below 5e-6 for x >= 0.
 template <class T>
 T angle_over_sine(const T& x) {
   using std::abs, std::max, std::sqrt, scalar_select::if_less;
@@ -32,7 +33,7 @@ T angle_over_sine(const T& x) {
   return if_less(x, T(0.0), whole - g, g);
 }
 
-/// An edge from a to b, and 1 where there is one.
+/// An edge from a to b; `present` is 1 if it exists.
 template <class V>
 struct LitEdge {
   using T = decltype(V::x);
@@ -46,7 +47,7 @@ V selected(const T& below, const T& limit, const V& x, const V& y) {
   return V(if_less(below, limit, x.x, y.x), if_less(below, limit, x.y, y.y), if_less(below, limit, x.z, y.z));
 }
 
-/// Edges of a closed convex polygon with what lies below the horizon cut away, and the edge along the cut last.
+/// Cuts away the part of a closed convex polygon below the horizon. The edge along the cut comes last.
 template <class V>
 std::vector<LitEdge<V>> edges_above(const std::vector<LitEdge<V>>& edges) {
   using T = decltype(V::x);
@@ -69,7 +70,7 @@ std::vector<LitEdge<V>> edges_above(const std::vector<LitEdge<V>>& edges) {
   return kept;
 }
 
-/// The plain cosine's share of a polygon above the horizon whose edges these are.
+/// The plain cosine's share of a polygon above the horizon, given by its edges.
 template <class V>
 auto share_of_edges(const std::vector<LitEdge<V>>& edges) {
   using T = decltype(V::x);
@@ -83,7 +84,8 @@ auto share_of_edges(const std::vector<LitEdge<V>>& edges) {
   return T(abs(sum) * (1 / kTwoPi));
 }
 
-/// Shares of a quadrilateral: of the plain cosine, and of transformed ones. Corners in order, relative to the point.
+/// Shares of a quadrilateral for the plain cosine and for transformed cosines. Corners are in order, relative to the
+/// lit point.
 template <class V>
 class LitQuad {
  public:
@@ -94,7 +96,7 @@ class LitQuad {
             {{p[0], p[1], T(1.0)}, {p[1], p[2], T(1.0)}, {p[2], p[3], T(1.0)}, {p[3], p[0], T(1.0)}})) {}
 
   T cosine_share() const { return share_of_edges(edges_); }
-  /// `to_cosine` takes a vector to that of the cosine.
+  /// `to_cosine` maps a vector into the frame of the cosine.
   template <class Map>
   T lobe_share(const Map& to_cosine) const {
     std::vector<LitEdge<V>> edges = edges_;

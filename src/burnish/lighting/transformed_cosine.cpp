@@ -8,7 +8,7 @@ namespace burnish {
 
 namespace {
 
-// z of the integral of an edge between unit vectors: their angle times the unit normal of their plane.
+// Returns z of the integral over an edge between unit vectors: their angle times the unit normal of their plane.
 double edge_integral(Vec3 a, Vec3 b) noexcept {
   const Vec3 normal = cross(a, b);
   const double sine = length(normal);
@@ -26,13 +26,13 @@ double TransformedCosine::determinant() const noexcept {
 double TransformedCosine::density(Vec3 w) const noexcept {
   const Vec3 c = to_cosine(w);
   if (c.z <= 0) return 0;
-  // the cosine's density times the solid angle's change, |det| / |c|^3 [Heitz2016, eq. 1]
+  // The cosine's density is multiplied by the change of solid angle, |det| / |c|^3 [Heitz2016, eq. 1].
   const double square = dot(c, c);
   return c.z / kPi * std::abs(determinant()) / (square * square);
 }
 
 double TransformedCosine::share_above() const noexcept {
-  // the upper hemisphere becomes one about `up`; the cosine's share of that is (1 + cos) / 2
+  // The upper hemisphere becomes one about `up`; the cosine's share of it is (1 + cos) / 2.
   const auto& b = inverse;
   const double sign = determinant() < 0 ? -1 : 1;
   const Vec3 up =
@@ -56,7 +56,8 @@ std::vector<Vec3> clipped_above(std::span<const Vec3> polygon) {
 }
 
 double cosine_share(std::span<const Vec3> polygon) noexcept {
-  // edges cut at the horizon, which the part that is left follows from where it is left to where it is entered
+  // Edges are cut at the horizon. The remaining polygon follows the horizon from the point where it leaves to the
+  // point where it enters.
   double sum = 0;
   Vec3 left{}, entered{};
   bool cut = false;

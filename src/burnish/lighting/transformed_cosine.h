@@ -22,18 +22,18 @@ struct TransformedCosine {
             b[6] * w.x + b[7] * w.y + b[8] * w.z};
   }
   double determinant() const noexcept;
-  /// Per solid angle at the unit vector w, 1/sr: its integral over the sphere is 1.
+  /// The density per solid angle at the unit vector w, 1/sr; its integral over the sphere is 1.
   double density(Vec3 w) const noexcept;
   /// The integral of the density over the upper hemisphere, in (0, 1].
   double share_above() const noexcept;
 };
 
-/// The part of a polygon with z > 0: corners in order, none where nothing is left. The polygon is planar and its corners
-/// are seen from the origin, which does not lie in its plane.
+/// Returns the part of a polygon with z > 0, with corners in order; empty if no part is left. The polygon is planar,
+/// and the origin does not lie in its plane.
 std::vector<Vec3> clipped_above(std::span<const Vec3> polygon);
 
-/// The integral of max(w.z, 0) / pi over the directions from the origin to a polygon, in [0, 1], whichever side is seen;
-/// edges are exact. The polygon is convex.
+/// The integral of max(w.z, 0) / pi over the directions from the origin to a convex polygon, in [0, 1], whichever
+/// side is seen. Edges are exact.
 double cosine_share(std::span<const Vec3> polygon) noexcept;
 
 /// The integral of the lobe's density over the directions above the horizon to a polygon, in [0, 1].
