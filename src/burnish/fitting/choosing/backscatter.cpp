@@ -18,14 +18,15 @@ constexpr double kTilts_deg[] = {20, 30, 40, 50, 60};
 constexpr double kNear_deg[] = {0.25, 0.75}, kRing_deg[] = {10, 12, 14};
 constexpr int kRetroAzimuths = 8;
 
-// A lobe about wi = wo is looked for up to the first theta_d of these where an incidence has enough samples, compared
-// with a ring between so many times that, and has to be so much higher.
+// A lobe about wi = wo is looked for up to the first of these theta_d that has enough samples at an incidence. It is
+// compared with a ring between kRetroRingLow and kRetroRingHigh times that theta_d, and has to be kMinRatio times as
+// high.
 constexpr std::array kRetroNear{radians(1.5), radians(3), radians(5)};
 constexpr double kRetroRingLow = 8.0 / 3, kRetroRingHigh = 16.0 / 3;
-constexpr double kMinTilt = radians(10);  // of the half vector: a highlight is there at the normal
+constexpr double kMinTilt = radians(10);  // of the half vector: the highlight lies at the normal
 constexpr double kMinRatio = 2;
 
-/// The mean over channels and azimuths at some theta_d; nothing where a value is not known.
+/// The mean over channels and azimuths at some theta_d; nothing if a value is not known.
 template <class Angles>
 std::optional<double> mean_at(BrdfRef source, double theta_h, const Angles& theta_d_deg) {
   std::vector<double> f(source.channels());
@@ -56,7 +57,7 @@ bool backscatters(BrdfRef source) {
 }
 
 bool backscatters(const SampleSource& source) {
-  // values near wi = wo and around it, by incidence and by what counts as near
+  // Sums of values near wi = wo and around it, for each incidence and each reach.
   struct Sums {
     double near = 0, ring = 0;
     std::size_t near_count = 0, ring_count = 0;
@@ -83,7 +84,7 @@ bool backscatters(const SampleSource& source) {
     }
   }
 
-  // what most of the incidences say that know
+  // The majority of the incidences with enough samples decides.
   std::size_t higher = 0, known = 0;
   for (const auto& [place, reaches] : incidences) {
     const auto sums = std::ranges::find_if(

@@ -16,7 +16,7 @@
 namespace burnish {
 namespace {
 
-/// Ten times as high where wi = wo, half of that 3.3 degrees from there.
+/// A factor of ten at wi = wo, and half of that 3.3 degrees from there.
 struct RetroFactor {
   static constexpr double kSlope = 9;
   static double of(double slope, std::size_t, Vec3 wi, Vec3 wo) noexcept {
@@ -26,7 +26,7 @@ struct RetroFactor {
 };
 using Tape = fixtures::GlossyTimes<RetroFactor>;
 
-/// The largest relative error of a model at wi = wo and a degree from there, 15 to 60 degrees off the normal.
+/// The largest relative error of a model at wi = wo and at one degree from there, 15 to 60 degrees off the normal.
 double error_of_peak(const Tape& tape, const FactoredBrdf& model) {
   double largest = 0;
   for (const double theta_deg : {15.0, 30.0, 60.0})
@@ -44,7 +44,7 @@ double error_of_peak(const Tape& tape, const FactoredBrdf& model) {
 TEST(Backscatter, IsSeenWhereALobeStandsAtThetaD0) {
   EXPECT_TRUE(backscatters(Tape{}));
   EXPECT_FALSE(backscatters(Tape{.slope = 0.3}));
-  EXPECT_FALSE(backscatters(Tape{.even = {.blind_below = 1}}));  // knows nothing
+  EXPECT_FALSE(backscatters(Tape{.even = {.blind_below = 1}}));  // no direction is known
   for (const char* spec : {"ggx:alpha_x=0.1", "ggx:alpha_x=0.5,alpha_y=0.2", "lambert", "openpbr"})
     EXPECT_FALSE(backscatters(parse_analytic(spec).ref())) << spec;
 }

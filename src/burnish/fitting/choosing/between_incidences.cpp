@@ -12,14 +12,14 @@ namespace burnish {
 
 namespace {
 
-constexpr double kNear = radians(5);  // of wo to wi
-constexpr double kStep_deg = 2.5;     // of what is expected
-// How far from incidences that is, at least: degrees, and of a gap.
+constexpr double kNear = radians(5);  // of wo to wi at samples
+constexpr double kStep_deg = 2.5;     // of theta_i of expected values
+// The least distance of expected values from incidences: in degrees, and as a share of the gap.
 constexpr double kApart_deg = 4, kApart = 0.25;
 constexpr std::array kDistances_deg{0.0, 1.0, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0};
 constexpr int kSides = 5;  // of wo about wi, over half a circle
 
-/// Polar angles in degrees where enough samples are near wi = wo.
+/// Polar angles in degrees that have enough samples near wi = wo.
 std::vector<double> incidences_of(const SampleSource& source) {
   struct Sum {
     double theta = 0;
@@ -42,7 +42,7 @@ std::vector<double> incidences_of(const SampleSource& source) {
   return found;
 }
 
-/// wi at a polar angle, wo at a distance from it, at an azimuth about it.
+/// A pair with wi at a polar angle, and wo at a distance and an azimuth about wi.
 DirectionPair pair_at(double theta_deg, double distance_deg, double azimuth) {
   const double theta = radians(theta_deg), distance = radians(distance_deg);
   const Vec3 wi = spherical_direction(theta, 0), down = spherical_direction(theta + kHalfPi, 0);
@@ -50,14 +50,14 @@ DirectionPair pair_at(double theta_deg, double distance_deg, double azimuth) {
   return {wi, std::cos(distance) * wi + std::sin(distance) * aside};
 }
 
-/// Linear between places; before the first, its value.
+/// Interpolates linearly between places; before the first place the value is constant.
 double line_at(const std::vector<double>& x, const std::vector<double>& y, double at) {
   if (at <= x.front()) return y.front();
   const auto i = static_cast<std::size_t>(std::ranges::upper_bound(x, at) - x.begin()) - 1;
   return std::lerp(y[i], y[i + 1], (at - x[i]) / (x[i + 1] - x[i]));
 }
 
-/// Whether a place is in the middle of a gap between incidences, or far enough above the first one.
+/// True if a place is in the middle of a gap between incidences, or far enough before the first one.
 bool is_apart(const std::vector<double>& incidences, double theta) {
   const auto next = std::ranges::upper_bound(incidences, theta);
   if (next == incidences.begin()) return *next - theta >= kApart_deg;
@@ -75,7 +75,7 @@ Samples between_incidences(const SampleSource& source, BrdfRef fitted) {
   for (double theta = 0; theta < incidences.back(); theta += kStep_deg)
     if (is_apart(incidences, theta)) gaps.push_back(theta);
 
-  // lines through the logarithms at incidences, for each distance and side
+  // For each distance and side, lines go through the logarithms at the incidences.
   std::vector<double> f(source.channels);
   for (const double distance : kDistances_deg)
     for (int k = 0; k < kSides; ++k) {
@@ -105,7 +105,7 @@ SampleSource with_expected(const SampleSource& source, const Samples& expected, 
   both.count = both.distinct = source.count + expected.size();
   both.fill = [&source, &expected, weight](std::size_t begin, std::span<DirectionPair> pairs,
                                            std::span<double> values, std::span<double> weights) {
-    // the source's, then the others
+    // The source's samples come first, then the expected ones.
     const std::size_t channels = source.channels,
                       first = begin < source.count ? std::min(pairs.size(), source.count - begin) : 0;
     if (first > 0)

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kTapeIncidences_deg[] = {15, 30, 60};
 
-/// A lobe about wi = wo that falls with the incidence, a highlight, and matt paint.
+/// A lobe about wi = wo that falls as the incidence grows, a highlight, and matt paint.
 struct ScannedTape {
   static std::size_t channels() noexcept { return 1; }
   static bool isotropic() noexcept { return true; }
@@ -29,7 +29,7 @@ struct ScannedTape {
   }
 };
 
-/// Rings about wi and a coarse lattice, at each incidence.
+/// Rings about wi, and a coarse lattice, at each incidence.
 Samples scanned_tape() {
   Samples samples{.channels = 1, .isotropic = true, .pairs = {}, .values = {}};
   const auto add = [&](Vec3 wi, Vec3 wo) {
@@ -73,7 +73,8 @@ TEST(BetweenIncidences, GoesFromOneIncidenceToTheNext) {
     for (const double incidence : kTapeIncidences_deg) EXPECT_GE(std::abs(theta_deg - incidence), 3.99);
     EXPECT_LE(angle_between(wi, wo), radians(10) + 1e-9);
     if (angle_between(wi, wo) > 1e-6) continue;
-    // the peak: as at the first incidence above it, a power of both neighbours between them
+    // Below the first incidence the peak is constant. Between two incidences it is a weighted geometric mean of
+    // theirs.
     const double low = theta_deg < 30 ? 15 : 30, share = (theta_deg - low) / low;
     const double truth = theta_deg < 15
                              ? value(15, 0)
@@ -81,7 +82,7 @@ TEST(BetweenIncidences, GoesFromOneIncidenceToTheNext) {
     EXPECT_NEAR(expected.values[i], truth, 1e-9 * truth) << theta_deg;
   }
 
-  // behind the source's own samples
+  // The expected samples follow the source's own.
   const SampleSource both = with_expected(source, expected, 0.5);
   ASSERT_EQ(both.count, samples.size() + expected.size());
   const std::size_t begin = samples.size() - 2;
@@ -104,7 +105,7 @@ TEST(BetweenIncidences, ExpectsNothingWhereAnInstrumentStoodEverywhere) {
   EXPECT_EQ(between_incidences(from_samples(samples, false), ScannedTape{}).size(), 0u);
 }
 
-// A product of factors had half as much again, or ten times as much, where no instrument stood.
+// Without the expected values, a product of factors was 1.5 or 10 times as high between the incidences.
 TEST(BetweenIncidences, KeepsThePeakOfAFitNearTheTruth) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const Fit made =

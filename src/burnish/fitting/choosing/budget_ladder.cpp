@@ -18,7 +18,7 @@ ErrorLevel level_of(const NodeFigures& figures) {
   return {.relative = figures.relative, .log_cos = figures.log_cos, .rms = figures.rms, .psnr = {}};
 }
 
-// How many times one error is above another, 0 where one of them is not known.
+// The ratio of an error to the noise, 0 if one of them is not known.
 double ratio(std::optional<double> error, std::optional<double> noise) {
   return error && noise && *noise > 0 ? *error / *noise : 0;
 }

@@ -13,30 +13,30 @@
 
 namespace burnish {
 
-/// The numbers of bytes that are tried where none is asked for.
+/// The budgets in bytes that are tried if none is given.
 inline constexpr std::array<std::uint64_t, 8> kBudgetLadder{700,    1'350,  2'700,  5'400,
                                                             10'800, 16'384, 32'768, 65'536};
 
-/// Where relative errors are of no interest any more, whatever the source.
+/// Relative errors below this value do not matter, whatever the source.
 inline constexpr double kMinRelative = 0.005;
-/// By what share twice the bytes must lower the error at least.
+/// The least share by which twice the bytes must lower the error.
 inline constexpr double kMinBudgetGain = 0.1;
 
-/// Scores models beside what the measurement itself would score.
+/// Compares the errors of models with the error of the measurement itself.
 class NoiseScale {
  public:
-  /// Errors of the function that is fitted; `source` is what it was made of. Of a measurement that is made reciprocal
-  /// the noise is what exchanged directions tell (exchanged_figures), its relative error at most what KrigedNodes
-  /// misses held-out nodes by where the source is isotropic (held_out_figures). Of any other source there is none.
-  /// Both must outlive the scale. Throws Error as Scorer and measured_nodes do.
+  /// Measures the errors of models of `fitted`; `source` is the data that it was made from. If a measurement is made
+  /// reciprocal, the noise is the difference between exchanged directions (exchanged_figures). For isotropic sources
+  /// its relative error is at most the error of KrigedNodes at held-out nodes (held_out_figures). Other sources have
+  /// no noise. Both must outlive the scale. Throws Error as Scorer and measured_nodes do.
   NoiseScale(const Source& source, BrdfRef fitted, bool symmetrized, const FigureOptions& figures);
-  /// Errors at nodes that are fitted, beside what is known of held-out ones.
+  /// Measures errors at the fitted nodes; the noise is the error at held-out nodes, if it is known.
   NoiseScale(const MeasuredNodes& nodes, const std::optional<NodeFigures>& held_out);
 
   const std::optional<ErrorLevel>& noise() const noexcept { return noise_; }
   ErrorLevel error_of(BrdfRef model) const;
-  /// How many times an error is above the noise, the largest of those that are known of both, no relative
-  /// noise counting as less than kMinRelative; without noise the relative error over kMinRelative.
+  /// The largest ratio of an error to the noise, among the errors that are known of both. A relative noise below
+  /// kMinRelative counts as kMinRelative. Without noise: the relative error over kMinRelative.
   double excess(const ErrorLevel& error) const noexcept;
 
  private:
@@ -45,10 +45,12 @@ class NoiseScale {
   std::optional<ErrorLevel> noise_;
 };
 
-/// Why no more bytes are tried after these trials, whose bytes rise; nothing: go on. Noise (or without it the
-/// floor) where the last one's excess is at most 1, gain where neither it nor the relative error is lower
-/// than that of the trial before by kMinBudgetGain each time the bytes double, largest at the end of the ladder.
-/// Precondition: at least one trial.
+/// The reason to try no more bytes after these trials, whose bytes rise; nothing: continue. Precondition: at least
+/// one trial. The reasons are:
+/// - noise, or floor without a known noise: the last excess is at most 1;
+/// - gain: neither the excess nor the relative error fell by kMinBudgetGain per doubling of the bytes since the trial
+///   before;
+/// - largest: the ladder ends.
 std::optional<BudgetStop> stop_after(std::span<const BudgetTrial> trials, bool noise_known);
 
 }  // namespace burnish

@@ -23,11 +23,11 @@ TEST(BudgetLadder, EndsAtTheNoiseOrWhereBytesHardlyHelp) {
   EXPECT_EQ(stop_after(Trials{trial(700, 1)}, false), BudgetStop::floor);
   EXPECT_EQ(stop_after(Trials{trial(700, 3), trial(1400, 2.8)}, true), BudgetStop::gain);
   EXPECT_EQ(stop_after(Trials{trial(700, 3), trial(1400, 2.6)}, true), std::nullopt);
-  // one error that falls is enough to go on
+  // The trials continue if only one of the errors falls.
   Trials relative{trial(700, 3), trial(1400, 3)};
   relative.back().error.relative = 0.02;
   EXPECT_EQ(stop_after(relative, true), std::nullopt);
-  // over half a doubling half of that gain is asked for
+  // Half a doubling needs half of that gain.
   EXPECT_EQ(stop_after(Trials{trial(10'000, 3), trial(14'142, 2.8)}, true), std::nullopt);
   EXPECT_EQ(stop_after(Trials{trial(32'768, 9), trial(65'536, 3)}, true), BudgetStop::largest);
 }
@@ -47,7 +47,7 @@ TEST(NoiseScale, TakesWhatExchangedDirectionsAndHeldOutNodesTell) {
   AngleTable table = tabulate_angles(fixtures::Glossy{.a = 4, .b = 4}, layout);
   Pcg32 random(1);
   constexpr double kNoise = 0.2;
-  // evenly spread, of variance 1
+  // The noise is uniform and has variance 1, times kNoise.
   for (float& value : table.values)
     value *= static_cast<float>(std::exp(kNoise * std::sqrt(12) * (random.uniform() - 0.5)));
   const Source source{"noisy", std::move(table), {}};
@@ -59,12 +59,12 @@ TEST(NoiseScale, TakesWhatExchangedDirectionsAndHeldOutNodesTell) {
   const ErrorFigures exchanged = exchanged_figures(scorer, source.ref()).value();
   EXPECT_LE(scale.noise()->relative, exchanged.relative);
   EXPECT_EQ(scale.noise()->rms, exchanged.rms);
-  // a mean of |noise| is sqrt(2 / pi) of its size; what is interpolated has less of it
+  // The mean of |noise| is sqrt(2 / pi) of its size; interpolated values have less of it.
   EXPECT_NEAR(std::log1p(scale.noise()->relative), 0.6 * kNoise, 0.3 * kNoise);
-  // the function that was fitted has none of it, the source as it is some
+  // The fitted function has no excess; the source itself has some.
   EXPECT_EQ(scale.excess(scale.error_of(fitted)), 0);
   EXPECT_GT(scale.excess(scale.error_of(source.ref())), 0.5);
-  // kept as it is, nothing tells
+  // Without symmetrization the noise is not known.
   EXPECT_FALSE(NoiseScale(source, source.ref(), false, figures).noise());
 }
 

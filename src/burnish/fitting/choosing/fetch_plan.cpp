@@ -16,20 +16,21 @@ namespace burnish {
 
 namespace {
 
-// Below this many texels lines serve better, where there are fetches for them.
+// With fewer texels than this, lines serve better, if there are enough fetches for them.
 constexpr double kMinVolumeTexels = 1200;
 
-// The way to the last refinement is made on about this many pairs, in few steps, at this share of the nodes.
+// Before the last refinement, fits use about this many pairs, few steps, and this share of the nodes.
 constexpr std::size_t kFewVolumePairs = 24'000, kCoarseNodes = 5000;
 constexpr double kCoarseShare = 0.25;
 constexpr int kCoarseSteps = 10, kCoarseStepsAfterTrial = 4, kFullSteps = 6, kHeldSteps = 4,
               kManyFullSteps = 4, kManyHeldSteps = 3;
-// The log-linear start counts values about zero as the relative error does, and is smooth and rough at once.
+// The log-linear start counts values about zero as the relative error does. It is smooth and only roughly solved.
 const HomomorphicOptions kStart{.smooth = 1e-5, .floor = PictureLoss::kFloor, .tolerance = 0.03};
-// Trials are fitted to every so many pairs, in so few steps, for gains that another draw of pairs would not give.
+// Trials use one of kVolumeTrialPart pairs and few steps. Their gains must exceed what another draw of pairs would
+// give.
 constexpr std::size_t kVolumeTrialPart = 8;
 constexpr int kVolumeTrialSteps = 4, kLobesTrialSteps = 30;
-// Of progress, where trials, steps with few pairs and steps with all of them end.
+// Progress at which trials, steps with few pairs and steps with all pairs end.
 constexpr double kVolumeTrialTime = 0.1, kCoarseTime = 0.3, kFullTime = 0.8;
 constexpr int kFetches[] = {2, 3, 4, 6, 8, 12, 24};
 
@@ -54,8 +55,8 @@ void fit_volume(const Heat& heat, Candidate& candidate) {
   refine(candidate.fit, fitted, heat.options);
 }
 
-/// The spec that serves a part of the pairs best that it was not fitted to. Of many nodes, which serve alike however
-/// they are shared out, the first, untried.
+/// Returns the spec that scores best on a part of the pairs that it was not fitted to. Specs with many nodes serve
+/// alike, whatever their distribution, so the first one is returned untried.
 Candidate best_volume(const std::vector<ModelSpec>& specs, const TrainingSet& set,
                       const RefineOptions& options) {
   if (specs.size() == 1 || coupled_unknowns(specs.front(), 1) > kCoarseNodes) return {.spec = specs.front()};
@@ -68,7 +69,7 @@ Candidate best_volume(const std::vector<ModelSpec>& specs, const TrainingSet& se
   return std::move(winner(candidates));
 }
 
-/// What try_fetches tries: models of several numbers of fetches that the bytes hold, each number once.
+/// The candidates of try_fetches: models with several numbers of fetches that the bytes hold, each number once.
 std::vector<Candidate> candidates_by_fetches(BrdfRef source, CostLimit limit) {
   const LobePlan lobes = plan_for(source, limit.bytes, 0, limit.texel_bytes);
   std::vector<int> fetches(std::begin(kFetches), std::end(kFetches));
@@ -131,7 +132,8 @@ LobePlan plan_within(BrdfRef source, const CostLimit& limit) {
       for (const PlannedFactor& factor : *factors) sum += factor.uses.size();
     return sum;
   };
-  // what serves least goes first: of what is spread wide all but theta_d, and at last all but the half vector
+  // The least useful factors are dropped first: the wide lobe's factors except that of theta_d, and last all factors
+  // except that of the half vector.
   const auto drop = [&](const char* name) {
     if (fetches() <= static_cast<std::size_t>(limit.fetches)) return;
     for (auto* factors : {&plan.factors, &plan.wide})
@@ -171,7 +173,7 @@ LobesFit fit_volumes(const TrainingSet& set, const std::vector<ModelSpec>& specs
   const ModelSpec& spec = chosen.spec;
   const bool tried = !chosen.fit.log_values.empty();
 
-  // The first steps take few nodes and pairs, and begin where the trial ended.
+  // The first steps use few nodes and pairs, and start from the trial's fit.
   const TrainingSet coarse = about(set, kFewVolumePairs);
   const bool many = coupled_unknowns(spec, 1) > kCoarseNodes;
   const ModelSpec start = many ? at_fewer_nodes(spec, kCoarseShare) : spec;
@@ -192,7 +194,8 @@ LobesFit fit_volumes(const TrainingSet& set, const std::vector<ModelSpec>& specs
   refine_part(coarse, TableFormat::single, tried ? kCoarseStepsAfterTrial : kCoarseSteps, kVolumeTrialTime,
               kCoarseTime);
 
-  // The last steps take all of them. Values that share an exponent are held in its reach only once they stand.
+  // The last steps use all nodes and pairs. Values that share an exponent are kept in its range only at the end, when
+  // they have settled.
   if (many) fit.model = resampled(fit.model, spec);
   refine_part(set, TableFormat::single, many ? kManyFullSteps : kFullSteps, kCoarseTime, kFullTime);
   refine_part(set, options.format, many ? kManyHeldSteps : kHeldSteps, kFullTime, 1);

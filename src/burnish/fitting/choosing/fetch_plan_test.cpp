@@ -17,7 +17,7 @@
 namespace burnish {
 namespace {
 
-// The bytes of a model of the spec in texels of four bytes.
+// The bytes of a model of the spec, with texels of four bytes.
 std::size_t bytes_of(const ModelSpec& spec) {
   LogModel model{.spec = spec, .channels = 3, .log_values = {}};
   for (const ModelSpec::TableSpec& table : spec.tables)
@@ -76,7 +76,7 @@ TEST(FetchPlan, TellsMirrorImagesApartInTwoFetches) {
       draw_training_set(source, {.pictures = 4'000, .directions = 8'000, .crowded = true});
   const FigureOptions figures{.count = 5000, .image_size = 32};
   const FactoredBrdf told = to_brdf(fit_volumes(set, specs, {.smooth = 1e-9}).model, TableFormat::half);
-  // both ends of phi_s are one place
+  // Both ends of phi_s are one place.
   const Table& volume =
       *std::ranges::find(told.tables(), TableShape::volume, [](const Table& t) { return t.layout.shape; });
   const auto layer = static_cast<std::size_t>(volume.layout.width * volume.layout.height) * volume.channels;
@@ -84,7 +84,7 @@ TEST(FetchPlan, TellsMirrorImagesApartInTwoFetches) {
   for (std::size_t i = 0; i < layer; ++i)
     apart += std::abs(std::log(volume.values[i] / volume.values[volume.values.size() - layer + i]));
   EXPECT_LT(apart / static_cast<double>(layer), 0.02);
-  // no model that is its own mirror image has less
+  // A model that is its own mirror image cannot have a smaller error.
   const double least = std::expm1(mirror_asymmetry(source));
   EXPECT_GT(least, 0.05);
   EXPECT_LT(error_figures(source, told, figures).relative, 0.3 * least);
@@ -141,7 +141,7 @@ TEST(FetchPlan, FrontalPixelsHaveOneDirectionAndStandAmongThePixels) {
     EXPECT_EQ(more.pairs[i].wi, more.pairs[i].wo);
     weight += static_cast<double>(more.weights[i]) / 100;
   }
-  EXPECT_NEAR(weight, 1, 0.05);  // as much as pixels that are spread evenly
+  EXPECT_NEAR(weight, 1, 0.05);  // as if spread evenly
   EXPECT_EQ(more.values.size(), 3 * more.size());
   EXPECT_EQ(more.pairs.back().wi, set.pairs.back().wi);
 }
@@ -152,7 +152,7 @@ TEST(FetchPlan, FitsGgxWithTwoFetches) {
   const TrainingSet set =
       draw_training_set(ggx.ref(), {.pictures = 6'000, .directions = 10'000, .crowded = true});
   const LobesFit fit = fit_volumes(set, volume_specs(ggx.ref(), limit), {.smooth = 1e-9});
-  // relative and log_cos errors of a percent, pictures of 40 dB
+  // The bounds are relative and log_cos errors of about a percent, and pictures of 40 dB.
   EXPECT_LT(objective(fit.model, set, {.relative = 1}), std::log(0.02));
   EXPECT_LT(objective(fit.model, set, {.log_cos = 1}), std::log(0.01));
   EXPECT_LT(objective(fit.model, set, {.pictures = 1}), std::log(1e-4));

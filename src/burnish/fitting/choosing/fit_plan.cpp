@@ -12,20 +12,20 @@ namespace burnish {
 
 namespace {
 
-// Where successive lobes are split off, in tan(theta_d / 2).
+// Successive lobes are split off at these values of tan(theta_d / 2).
 constexpr double kCentres[] = {0.25, 0.6, 0.4, 0.8, 0.15, 0.5, 0.7, 0.3};
 constexpr std::size_t kFirstCentres[] = {0, 1, 2, 4};  // of the first, second, ... start
 static_assert(std::size(kFirstCentres) == kLobeStarts);
 
-// The log-linear start is smooth: functions of the four angles nearly add up to nothing in many ways, and a
-// fit that uses them is ruined once its tables are kept within their formats.
+// The log-linear start is smooth. Functions of the four angles can nearly cancel in many ways. A fit that uses these
+// ways is ruined once its tables are rounded to their formats.
 constexpr double kStartSmooth = 1e-3;
 
-// The way to the last refinement is made on about this many pairs and in few steps.
+// Before the last refinement, fits use about this many pairs and few steps.
 constexpr std::size_t kCoarsePairs = 20'000;
 constexpr int kRoughSteps = 12;
 constexpr int kGridSteps = 16;
-// Refinements of all lobes go in rounds: each sees the floors that shared exponents set anew.
+// All lobes are refined in rounds: in each round the floors of shared exponents are set anew.
 constexpr int kRounds = 2;
 constexpr double kThinPart = 0.3;  // share of the work done by then
 
@@ -47,12 +47,12 @@ void refine_in_rounds(LobesFit& fit, const TrainingSet& set, const RefineOptions
     refine_part(fit, set, lookups, options, (steps + k) / kRounds, part(k), part(k + 1));
 }
 
-/// Steps of the last refinement on part of the data, before those on all.
+/// The number of steps of the last refinement on part of the data, before those on all data.
 int rough_steps(const TrainingSet& coarse, const TrainingSet& set, const RefineOptions& options) {
   return coarse.size() < set.size() ? std::min(2 * kRoughSteps, options.max_iterations) : 0;
 }
 
-/// The last refinement: on part of the data, then on all.
+/// Runs the last refinement: on part of the data, then on all data.
 void refine_fully(LobesFit& fit, const TrainingSet& coarse, const TrainingSet& set,
                   const RefineOptions& options, double from) {
   const double middle = from + 0.3 * (1 - from);
@@ -65,7 +65,7 @@ TrainingSet coarse_part(const TrainingSet& set) {
   return thinned(set, std::max<std::size_t>(1, set.size() / kCoarsePairs));
 }
 
-// The spec without its grids, the tables in the same order.
+// Returns the spec without its grids; the other tables keep their order.
 ModelSpec without_grids(const ModelSpec& spec) {
   ModelSpec thin;
   std::vector<std::optional<std::size_t>> place(spec.tables.size());
@@ -95,7 +95,7 @@ bool has_disk(const ModelSpec& spec, const std::vector<FactorUse>& lobe) {
       lobe, [&](const FactorUse& use) { return spec.tables[use.table].layout.shape == TableShape::disk; });
 }
 
-/// One lobe of a spec, its tables, and which of the spec's they are.
+/// One lobe of a spec with its tables, and the places of these tables in the spec.
 struct LobeAlone {
   ModelSpec spec;
   std::vector<std::size_t> tables;
@@ -115,7 +115,7 @@ LobeAlone lobe_alone(const ModelSpec& spec, std::size_t lobe) {
   return alone;
 }
 
-/// A plan's spec: first the tables that all lobes have in common, then each lobe's own.
+/// A plan's spec, in which the tables that all lobes share come first, then each lobe's own.
 class LobesInTurn {
  public:
   LobesInTurn(const LobePlan& plan, ModelSpec spec) : spec_(std::move(spec)) {
@@ -141,7 +141,7 @@ class LobesInTurn {
   std::size_t first_own_ = 0, per_lobe_ = 0;
 };
 
-/// A model of the lobes so far with one more, split off the last.
+/// Splits the last lobe, and returns a model with one lobe more.
 LogModel with_next_lobe(LogModel model, const LobesInTurn& lobes, std::size_t count, std::size_t start) {
   model = with_lobe_split(
       std::move(model), count - 2,
@@ -152,7 +152,7 @@ LogModel with_next_lobe(LogModel model, const LobesInTurn& lobes, std::size_t co
   return resampled(model, spec);
 }
 
-/// A low value of each channel, which stands for what is spread wide.
+/// A low value of each channel, which represents the wide lobe.
 std::vector<float> low_values(const TrainingSet& set) {
   const auto channels = set.channels;
   std::vector<float> low(channels);
@@ -166,8 +166,9 @@ std::vector<float> low_values(const TrainingSet& set) {
   return low;
 }
 
-/// Which part of the values a lobe starts from: of `count` parts along theta_d number `place`, of what lies
-/// below the low values (wide) or above them; of everything where there are none.
+/// The part of the values that a lobe starts from. It is part number `place` of `count` parts along theta_d. Wide
+/// lobes use what lies below the low values, other lobes what lies above them. Without low values they use
+/// everything.
 struct StartPart {
   std::size_t place, count;
   bool wide;
@@ -193,15 +194,17 @@ std::vector<float> values_of(const StartPart& part, const TrainingSet& set, cons
   return values;
 }
 
-/// Share of the work that is done with `lobes` of `count`, which grows with their square.
+/// The share of the work done after `lobes` of `count` lobes. The work of each step grows with the square of its
+/// number of lobes.
 double lobes_done(std::size_t count, std::size_t lobes) {
   return 0.4 * static_cast<double>(lobes * lobes * lobes) / static_cast<double>(count * count * count);
 }
 
-/// From a model of one lobe to one of all, each lobe refined roughly but the last, on part of the data.
+/// Turns a model of one lobe into one of all lobes, on part of the data. Each new lobe but the last is refined
+/// roughly.
 void split_off(LobesFit& fit, const LobesInTurn& lobes, const TrainingSet& coarse, std::size_t start,
                RefineOptions options) {
-  options.format = TableFormat::single;  // lobes that part are not yet held within their format
+  options.format = TableFormat::single;  // separate lobes are not yet held within their format
   for (std::size_t j = 1; j < lobes.count(); ++j) {
     refine_part(fit, coarse, lookups_of(fit.model.spec, coarse), options, kRoughSteps,
                 lobes_done(lobes.count(), j - 1), lobes_done(lobes.count(), j));
@@ -209,7 +212,7 @@ void split_off(LobesFit& fit, const LobesInTurn& lobes, const TrainingSet& coars
   }
 }
 
-/// All starts from one model of one lobe, as far as part of the data takes them; the best is refined on all of it.
+/// Runs all starts from one model of one lobe on part of the data, and refines the best on all data.
 LobesFit best_start(const LobesFit& first, const LobesInTurn& lobes, const TrainingSet& coarse,
                     const TrainingSet& set, const RefineOptions& options, std::size_t starts) {
   constexpr double kTried = 0.6;  // share of the work done by then
@@ -238,8 +241,8 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
   const ModelSpec whole = plan_to_spec(plan, bytes, set.channels, texel_bytes);
   if (!plan.wide.empty()) return fit_lobes(set, whole, options);
 
-  // Of many unknowns the 1-D tables first: their steps are solved directly, and grids that start as 1 only
-  // lower the error.
+  // With many unknowns, 1-D tables are fitted first: their steps are solved directly. Grids that start as 1 can then
+  // only lower the error.
   const bool direct = coupled_unknowns(whole, set.channels) <= kMaxCholeskyUnknowns;
   const LobesInTurn lobes(plan, direct ? whole : without_grids(whole));
   const bool grids = lobes.first(lobes.count()).tables.size() < whole.tables.size();
@@ -258,7 +261,7 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
     return fit;
   }
 
-  if (lobes.count() == 1) starts = 1;  // nothing to split
+  if (lobes.count() == 1) starts = 1;  // there is nothing to split
   if (starts > 1) return best_start(fit, lobes, coarse, set, options, starts);
   split_off(fit, lobes, coarse, 0, options);
   refine_fully(fit, coarse, set, options, lobes_done(lobes.count(), lobes.count() - 1));
@@ -271,13 +274,13 @@ LobesFit fit_lobes(const TrainingSet& set, const ModelSpec& spec, const RefineOp
   LobesFit fit{.model = {.spec = spec, .channels = set.channels, .log_values = {}}};
   fit.model.log_values.resize(spec.tables.size());
 
-  // lobes without a disk beside such with one are for what is spread wide
+  // If some lobes have a disk, the lobes without one are wide lobes.
   const bool any_disk = std::ranges::any_of(spec.lobes, [&](const auto& l) { return has_disk(spec, l); });
   const auto is_wide = [&](const auto& lobe) { return any_disk && !has_disk(spec, lobe); };
   const auto wide = static_cast<std::size_t>(std::ranges::count_if(spec.lobes, is_wide));
   const std::vector<float> low = wide > 0 ? low_values(set) : std::vector<float>();
 
-  // each starts as the fit to its part of the data
+  // Each lobe starts as the fit to its part of the data.
   std::size_t wide_seen = 0, narrow_seen = 0;
   for (std::size_t j = 0; j < lobes; ++j) {
     const bool of_wide = is_wide(spec.lobes[j]);

@@ -9,24 +9,26 @@ namespace burnish {
 
 struct LobesFit {
   LogModel model;
-  /// Of the last refinement, its errors as refine says; iterations are the Gauss-Newton steps of all
+  /// The summary of the last refinement, with the errors of refine. Its iterations are the Gauss-Newton steps of all
   /// refinements and channels.
   FitSummary summary;
 };
 
-/// Fits an isotropic plan: one lobe log-linearly [HomomorphicBrdf, eq. 5], then one split off after the other
-/// and refined, each split starting from the function there was. A plan with a wide lobe is fitted by
-/// fit_lobes. Which angles lobes are split at first decides where refinement ends, within a few percent of the
-/// errors: of `starts` ways, at least 1, that with the least objective on part of the data goes on to all of it. They
-/// serve plans of few unknowns, whose steps are solved directly; others have one. Rounding to the table format is left
-/// to to_brdf. Throws Error as plan_to_spec and fit_homomorphic do.
+/// Fits an isotropic plan. The first lobe is fitted log-linearly [HomomorphicBrdf, eq. 5]. Then one lobe after
+/// another is split off and refined; each split starts from the present function. A plan with a wide lobe is fitted
+/// by fit_lobes.
+///
+/// The angles of the first splits decide where refinement ends, within a few percent of the errors. So `starts`
+/// different ways, at least 1, are tried on part of the data, and the one with the least objective continues on all
+/// of it. Several starts are used only for plans of few unknowns, whose steps are solved directly. Rounding to the
+/// table format is left to to_brdf. Throws Error as plan_to_spec and fit_homomorphic do.
 LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t bytes, std::size_t texel_bytes,
                   const RefineOptions& options, std::size_t starts = 1);
-/// The starts that fits take.
+/// The number of starts of fits.
 inline constexpr std::size_t kLobeStarts = 4;
 
-/// Fits a given model of any number of lobes: each starts as the log-linear fit to its part of the data,
-/// parts cut along theta_d, or by height where the lobes differ in shape; then all are refined together.
+/// Fits a given model of any number of lobes. Each lobe starts as the log-linear fit to its part of the data. Parts
+/// are cut along theta_d, or by height if the lobes differ in shape. Then all lobes are refined together.
 LobesFit fit_lobes(const TrainingSet& set, const ModelSpec& spec, const RefineOptions& options);
 
 }  // namespace burnish

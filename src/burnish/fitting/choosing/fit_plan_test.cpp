@@ -21,7 +21,7 @@ TEST(FitPlan, MoreBytesMeanSmallerErrors) {
         fit_plan(set, default_plan(bytes, 0, true, kHalfRgb), bytes, kHalfRgb, {.max_iterations = 12});
     const ErrorFigures e =
         error_figures(ward.ref(), to_brdf(fit.model, TableFormat::half), {.count = 5000, .image_size = 64});
-    // beyond 50 dB and 1 % few steps end where they happen to
+    // Beyond 50 dB and 1 % the result of few steps depends on chance.
     EXPECT_GT(e.psnr, std::min(last_psnr, 50.0));
     EXPECT_LT(e.relative, std::max(last_relative, 0.01));
     last_psnr = e.psnr;

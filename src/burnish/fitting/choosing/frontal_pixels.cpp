@@ -19,7 +19,7 @@ TrainingSet with_frontal_pixels(BrdfRef source, TrainingSet set, double share) {
   const auto count = static_cast<std::size_t>(share * static_cast<double>(set.picture_count));
   const auto channels = set.channels;
 
-  // low-discrepancy normals, half of them uniform on the disk, half with theta = pi/2 u^2
+  // Low-discrepancy normals: half of them are uniform on the disk, and half have theta = pi/2 u^2.
   std::vector<DirectionPair> pairs;
   std::vector<float> weights;
   for (std::size_t i = 0; i < count; ++i) {
@@ -36,7 +36,7 @@ TrainingSet with_frontal_pixels(BrdfRef source, TrainingSet set, double share) {
   std::vector<std::uint8_t> known(pairs.size());
   source.eval(pairs, values, known);
 
-  // after the pixels that there are
+  // The new pixels follow the present ones.
   TrainingSet more = set;
   const auto cut = [&](auto& v, std::size_t at) {
     v.erase(v.begin() + static_cast<std::ptrdiff_t>(at), v.end());

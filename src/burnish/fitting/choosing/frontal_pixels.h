@@ -5,9 +5,9 @@
 
 namespace burnish {
 
-/// The set with more pixels of spheres lit from the viewer: theta_d is 0 there, at the edge of a volume, whose
-/// nodes the pixels of other lights reach from one side only. As many as `share` of the pixels that there are,
-/// half of them where theta_h is small, weighted as if they were spread evenly over the disk.
+/// Adds pixels of spheres lit from the viewer to the set. Their theta_d is 0, at the edge of a volume; pixels of
+/// other lights reach the nodes there from one side only. Their number is `share` of the present pixels. Half of them
+/// have small theta_h; weights make them count as if they were spread evenly over the disk.
 TrainingSet with_frontal_pixels(BrdfRef source, TrainingSet set, double share);
 
 }  // namespace burnish

@@ -39,19 +39,19 @@ constexpr ProductForm kForms[] = {
      .difference = 0.2},
 };
 
-// The first heat: at about so many nodes, of so many pairs each, in so few steps, on a part of the pairs.
+// The first heat uses about this many nodes, this many pairs a node, few steps, and a part of the pairs.
 constexpr double kTrialUnknowns = 900, kPairsOfNode = 6;
-constexpr std::size_t kFewerFetches = 2;  // of what is tried, at most below the limit
+constexpr std::size_t kFewerFetches = 2;  // candidates are at most this far below the limit
 constexpr int kFirstSteps = 20;
 constexpr std::size_t kFirstPart = 8, kFinalists = 3, kFinalPart = 4;
-// Above 50 dB what is left of pictures is not seen; relative errors are. A fetch has to lower the errors by 3 %.
+// Above 50 dB errors of pictures are not visible; relative errors are. A fetch has to lower the errors by 3 %.
 constexpr ErrorTerms kFinalShares{.pictures = 1, .relative = 2, .log_cos = 2};
 constexpr double kWorthOfFetch = 0.03;
-constexpr double kFirstTime = 0.15, kFinalTime = 0.4;  // when they end, of the whole
-// Then at all nodes: on part of the pairs, and of the best one on all of them.
+constexpr double kFirstTime = 0.15, kFinalTime = 0.4;  // progress at which they end
+// The final runs at all nodes on part of the pairs, and then for the winner on all pairs.
 constexpr int kFinalSteps = 8, kLastSteps = 6;
 
-/// The fit at all nodes of the spec, after some more steps.
+/// Resamples the fit to all nodes of the spec, and refines it by some more steps.
 FitSummary refine_at_all(LogModel& fit, const ModelSpec& spec, const TrainingSet& set, RefineOptions options,
                          int steps) {
   fit = resampled(fit, spec);
@@ -59,7 +59,7 @@ FitSummary refine_at_all(LogModel& fit, const ModelSpec& spec, const TrainingSet
   return refine(fit, set, options);
 }
 
-/// The first heat: in few steps at few nodes, which come near the least error soonest. Returns the finalists.
+/// Runs the first heat and returns the finalists. Few steps at few nodes approach the least error soonest.
 std::vector<Candidate> first_heat(std::vector<ModelSpec> specs, const TrainingSet& mean,
                                   const RefineOptions& options) {
   const Heat heat{.parts = TrialParts(mean, kFirstPart),
@@ -70,7 +70,7 @@ std::vector<Candidate> first_heat(std::vector<ModelSpec> specs, const TrainingSe
   std::vector<Candidate> candidates;
   for (ModelSpec& spec : specs) candidates.push_back({.spec = std::move(spec)});
   const auto fit = [&](Candidate& candidate) {
-    // Steps at so many unknowns are solved directly, and the pairs determine them.
+    // Steps with so few unknowns are solved directly, and the pairs determine them.
     const double nodes = static_cast<double>(coupled_unknowns(candidate.spec, 1));
     const ModelSpec trial = at_fewer_nodes(candidate.spec, std::min(1.0, most / nodes));
     candidate.fit = fit_lobes(heat.parts.fitted, trial, heat.options).model;
@@ -79,8 +79,8 @@ std::vector<Candidate> first_heat(std::vector<ModelSpec> specs, const TrainingSe
   return finalists(std::move(candidates), kFinalists);
 }
 
-/// The final: finalists come near their least error at all nodes, of a quarter of the pairs. Few steps leave some
-/// behind that end ahead.
+/// The final heat. Finalists come near their least error at all nodes, on a quarter of the pairs. With few steps some
+/// models would lose that win in the end.
 Heat final_heat(const TrainingSet& mean, const RefineOptions& options, double worth_of_fetch) {
   return {.parts = TrialParts(mean, kFinalPart),
           .options = in_few_steps(options, std::min(kFinalSteps, options.max_iterations)),
@@ -88,12 +88,13 @@ Heat final_heat(const TrainingSet& mean, const RefineOptions& options, double wo
           .worth_of_fetch = worth_of_fetch};
 }
 
-/// A finalist goes on from where it stands.
+/// Continues a finalist from its present fit.
 void refine_finalist(const Heat& finals, Candidate& candidate) {
   refine_at_all(candidate.fit, candidate.spec, finals.parts.fitted, finals.options, kFinalSteps);
 }
 
-/// The mean's model for every channel of the set, each of which reflects as much of what is drawn as it does.
+/// Turns the mean's model into one of every channel of the set. Each channel is scaled to reflect as much of the
+/// drawn pairs as its data.
 LogModel in_colour(const LogModel& grey, const TrainingSet& set) {
   LogModel model{.spec = grey.spec, .channels = set.channels, .log_values = {}};
   std::vector<double> sums(set.channels);
@@ -117,7 +118,7 @@ LogModel in_colour(const LogModel& grey, const TrainingSet& set) {
   return model;
 }
 
-/// All forms within the limit; none where its bytes do not hold any.
+/// Returns all forms within the limit; none if its bytes hold no form.
 std::vector<ModelSpec> specs_within(const CostLimit& limit, std::size_t channels) {
   std::vector<ModelSpec> specs;
   for (const ProductForm& form : kForms)
@@ -163,7 +164,7 @@ FetchTrials try_hemispheres(const TrainingSet& set, CostLimit limit, const Refin
   std::vector<ModelSpec> specs = specs_within(limit, set.channels);
   if (specs.empty()) return {};
 
-  // The finalists and, last, the lobes. Fetches cost nothing here: the knee decides.
+  // The candidates are the finalists and, last, the lobes. Fetches cost nothing in this heat: the knee decides.
   const TrainingSet mean = mean_of_channels(set);
   std::vector<Candidate> candidates = first_heat(std::move(specs), mean, options);
   candidates.push_back(

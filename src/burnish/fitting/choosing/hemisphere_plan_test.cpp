@@ -45,7 +45,7 @@ TEST(HemispherePlan, KeepsBothLimitsAndUsesTheBytes) {
 TEST(HemispherePlan, GivesReciprocalModels) {
   for (const ModelSpec& spec : hemisphere_specs({.bytes = 16'384, .texel_bytes = 2, .fetches = 6}, 1)) {
     EXPECT_TRUE(flat(spec).reciprocal());
-    // what tells mirror images apart has one place at both ends
+    // A table that distinguishes mirror images has one place at both ends.
     for (const auto& lobe : spec.lobes)
       for (const FactorUse& use : lobe)
         if (spec.tables[use.table].layout.shape == TableShape::volume) {
@@ -59,7 +59,7 @@ TEST(HemispherePlan, CountsWhatAModelTakes) {
     EXPECT_EQ(flat(spec).bytes(), model_bytes(spec, 1, 2));
 }
 
-/// So many pixels and twice as many pairs of a brushed metal, grey.
+/// Draws pixels, and twice as many pairs, of a grey brushed metal.
 TrainingSet brushed_metal(std::size_t pictures, std::uint64_t seed) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.15,alpha_y=0.4,kd=0.2");
   const TrainingSet drawn =
@@ -104,7 +104,7 @@ TEST(HemispherePlan, TriesFewFetchesBesideLobes) {
 }
 
 TEST(HemispherePlan, GoesOnFromTheMeanOfTheChannels) {
-  // green is the mean of the channels, blue reflects a quarter of it, and nothing is red
+  // Green equals the mean of the channels, blue reflects a quarter of it, and red is zero.
   const TrainingSet grey = brushed_metal(600, 1);
   TrainingSet set = grey;
   set.channels = 3;

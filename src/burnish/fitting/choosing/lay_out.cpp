@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kMinDepth = 3, kMinDiskSide = 5;
 
-// Nodes of volumes by whether they tell mirror images apart, of grids along theta_d and phi_s relative to each other.
+// kFolded is for volumes that are their own mirror image, kSigned for others. Grids have 1.5 nodes along phi_s for
+// each along theta_d.
 constexpr VolumeForm kFolded{14, 12, 6}, kSigned{8, 10, 10};
 constexpr double kSidesOfDifference = 1.5;
 constexpr int kWideNodes = 12;
@@ -28,7 +29,7 @@ TableLayout grid_of_difference(double nodes) {
           .height = std::max(3, static_cast<int>(kSidesOfDifference * side))};
 }
 
-/// A use of the table, all of which are of one kind.
+/// Returns one use of the table; all of its uses are of one kind.
 const FactorUse& use_of(const ModelSpec& spec, std::size_t table) {
   for (const std::vector<FactorUse>& lobe : spec.lobes)
     for (const FactorUse& use : lobe)
@@ -74,7 +75,7 @@ std::optional<ModelSpec> lay_out(const ProductForm& form, const CostLimit& limit
     return table.layout.shape == TableShape::grid || table.layout.shape == TableShape::volume;
   }));
 
-  // Each table but those of half vectors gets its share of the texels.
+  // Each table except those of half vectors gets its share of the texels.
   for (std::size_t t = 0; t < spec.tables.size(); ++t) {
     TableLayout& layout = spec.tables[t].layout;
     const FactorUse& use = use_of(spec, t);
@@ -95,7 +96,7 @@ std::optional<ModelSpec> lay_out(const ProductForm& form, const CostLimit& limit
     }
   }
 
-  // Tables of half vectors have no nodes yet: the count so far is what the others take. They share what is left.
+  // Tables of half vectors have no nodes yet, so this count is that of the other tables. They share the rest.
   const std::size_t taken = model_bytes(spec, channels, limit.texel_bytes);
   const double rest =
       taken < limit.bytes ? static_cast<double>((limit.bytes - taken) / limit.texel_bytes) : 0;

@@ -21,9 +21,9 @@ TEST(LayOut, VolumesFillTheirNodesInAboutTheirForm) {
       EXPECT_EQ(layout.warp, kHalfRootWarp);
       const auto found = static_cast<double>(layout.node_count());
       EXPECT_LE(found, nodes);
-      // one node more along theta_h would be too many
+      // One more node along theta_h would be too many.
       EXPECT_GT(found + layout.height * layout.depth, nodes);
-      // sides are whole numbers, and the first two take up what rounding of the last leaves
+      // Sides are whole numbers. The first two sides absorb the rounding of the last one.
       const double scale = std::cbrt(nodes / (form.half * form.difference * form.azimuth));
       EXPECT_NEAR(layout.depth, std::max(3.0, form.azimuth * scale), 0.5);
       EXPECT_NEAR(layout.height, std::sqrt(nodes / layout.depth * form.difference / form.half), 0.5);
@@ -63,7 +63,7 @@ TEST(LayOut, ProductsFillTheirBytesAndLeaveOutWhatTheyDoNotHold) {
   EXPECT_FALSE(lay_out(form, {.bytes = 100}, 3));
 }
 
-/// FactoredBrdf::bytes of a model of the spec.
+/// FactoredBrdf::bytes of a model with this spec.
 std::size_t bytes_in_the_end(const ModelSpec& spec, std::size_t channels, TableFormat format) {
   LogModel model{.spec = spec, .channels = channels, .log_values = {}};
   for (const ModelSpec::TableSpec& table : spec.tables)

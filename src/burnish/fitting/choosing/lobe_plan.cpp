@@ -16,33 +16,32 @@ namespace burnish {
 
 namespace {
 
-// Highlights are narrow, but a gamma-corrected picture shows their skirts as wide rings: a mild crowding at
-// the normal. theta_m spans twice the angle, and only its beginning matters.
+// Highlights are narrow, but a gamma-corrected picture shows their flanks as wide rings. So nodes are only slightly
+// denser at the normal. theta_m spans twice the angle, and only its beginning matters.
 constexpr Warp kHalfWarp{WarpKind::power, 0.8}, kDeviationWarp{WarpKind::power, 0.5};
 constexpr Warp kSkewWarp{WarpKind::power, 0.7};
-// A direction between one of the two and the half vector; both together are reciprocal.
+// A direction between wi or wo and the half vector; both projections together are reciprocal.
 constexpr Projection kProjectSkew{.wi = 1, .wo = 0.5}, kProjectSkewSwapped{.wi = 0.5, .wo = 1};
 
-// Of an isotropic model: from how many texels on it has grids, and how many its 1-D tables take at most.
+// An isotropic model has grids from this many texels on; its 1-D tables take at most kMaxLineTexels.
 constexpr double kGridTexels = 1500, kThreeGridTexels = 6000, kMaxLineTexels = 2000;
-// Of the factor that tells mirror images apart: nodes from one side to the other, where 3 and 7 did no
-// better, and its share, where .04 to .4 did about as well.
+// The factor that distinguishes mirror images: kTwistNodes from one side to the other (3 and 7 nodes were no better),
+// and its share (.04 to .4 were about as good).
 constexpr int kTwistNodes = 5;
 constexpr double kTwistShare = 0.25;
-// Of what the order of the directions changes: a grid for all lobes, its nodes along theta_i, more where other factors
-// have grids too, and a line for each lobe.
+// The tables for the order of the directions: one grid for all lobes and a line for each lobe. The grid's nodes along
+// theta_i are more if other factors have grids too.
 constexpr int kOrderNodes = 4, kManyOrderNodes = 8;
 constexpr double kOrderShare = 0.3, kOrderLineShare = 0.1;
 constexpr Warp kOrderWarp{WarpKind::power, 0.5};
 constexpr int kMaxLineNodes = 1024;  // nodes of a line: finer than any measurement
 
-// More texels for each of few lobes resolve rings, more lobes follow how the highlight changes with the
-// angles.
+// Lobes with more texels resolve rings; more lobes follow the change of the highlight with the angles.
 int lobes_for(double texels) {
   return std::clamp(static_cast<int>(std::lround(std::log2(texels / 82))), 1, 8);
 }
 
-// A node of a table with one channel for all takes this share of a texel.
+// The cost of a node in texels; a table with one channel for all costs only a part of a texel.
 double node_cost(const PlannedFactor& factor, std::size_t channels, std::size_t texel_bytes) {
   if (!factor.grey) return 1;
   return static_cast<double>(shared_texel_bytes(channels, texel_bytes)) / static_cast<double>(texel_bytes);
@@ -66,7 +65,7 @@ std::size_t add_table(const PlannedFactor& factor, const std::string& suffix, Un
   return model.factors.size() - 1;
 }
 
-// Appends lobes: first the tables that they have in common, then each lobe's own.
+// Appends lobes: first the tables that they share, then each lobe's own.
 void add_lobes(const std::vector<PlannedFactor>& factors, std::size_t lobes, bool numbered, Unsized& model) {
   std::vector<std::size_t> common(factors.size());
   for (std::size_t k = 0; k < factors.size(); ++k)
@@ -84,7 +83,7 @@ void add_lobes(const std::vector<PlannedFactor>& factors, std::size_t lobes, boo
   }
 }
 
-// Gives a factor's table at most `nodes` nodes.
+// Sets the size of a factor's table to at most `nodes` nodes.
 void set_size(const PlannedFactor& factor, double nodes, ModelSpec::TableSpec& table) {
   const bool line = factor.shape == TableShape::line;
   const int least = factor.shape == TableShape::disk ? 3 : 2;
@@ -100,7 +99,7 @@ void set_size(const PlannedFactor& factor, double nodes, ModelSpec::TableSpec& t
   table.layout.height = height;
 }
 
-// Shares out at most `texels` texels among the tables from `first` on, up to `end`, which are those of `factors`.
+// Distributes at most `texels` texels among the tables [first, end), which belong to `factors`.
 void share_texels(const std::vector<PlannedFactor>& factors, std::size_t lobes, double texels,
                   std::size_t channels, std::size_t texel_bytes, std::size_t first, std::size_t end,
                   Unsized& model) {
@@ -125,7 +124,7 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
   };
   if (isotropic) {
     const double texels = static_cast<double>(bytes) / static_cast<double>(texel_bytes);
-    // Beyond some hundred texels a lobe, what three 1-D tables multiply to is missing more than resolution.
+    // Beyond some hundred texels a lobe, the limit is the product of three 1-D tables, not their resolution.
     const bool grids = texels > kGridTexels, three = texels > kThreeGridTexels;
     const double lines = grids ? std::min(0.5, kMaxLineTexels / texels) : 1;
     if (lobes <= 0) plan.lobes = lobes_for(lines * texels);
@@ -133,8 +132,8 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
                     line("m", {kProjectDeviation}, 0.183, kDeviationWarp),
                     line("r", {kProjectDifference}, 0.147)};
     if (plan.lobes > 1) {
-      // What the lobes have in common of q, rings of films above all, is finely resolved once; their own q
-      // are coarse.
+      // The common part of all q, such as rings of films, is finely resolved in one table z; each lobe's own q is
+      // coarse.
       plan.factors[1].share = 0.176;
       plan.factors.push_back(line("z", {kProjectHalf}, 1, kHalfWarp));
       plan.factors.back().every_lobe = true;
@@ -152,7 +151,7 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
     }
     return plan;
   }
-  // The narrow factors of a highlight take few texels; what is left is nearly all q's.
+  // The narrow factors of a highlight take few texels; nearly all others are q's.
   constexpr double kRing = 24;
   constexpr int kWide = 12;
   plan.lobes = lobes <= 0 ? 1 : lobes - 1;
@@ -218,7 +217,7 @@ ModelSpec plan_to_spec(const LobePlan& plan, std::size_t bytes, std::size_t chan
   const std::size_t wide_tables = model.factors.size();
   add_lobes(plan.factors, lobes, true, model);
 
-  // Without nodes the model takes the bytes of its numbers alone. The texels share the others.
+  // Without nodes the model takes only the bytes of its numbers. The texels share the other bytes.
   const std::size_t numbers = model_bytes(model.spec, channels, texel_bytes);
   const std::size_t texels = bytes > numbers ? (bytes - numbers) / texel_bytes : 0;
   const auto wide = static_cast<std::size_t>(plan.wide_texels);

@@ -35,7 +35,7 @@ TEST(LobePlan, FillsItsBytesAndNoMore) {
     }
 }
 
-// What compact_file.h promises, whatever the values are.
+// Plans keep the promise of compact_file.h, whatever the values are.
 TEST(LobePlan, MakesCompactFiles) {
   struct {
     std::size_t texel_bytes;
@@ -97,7 +97,7 @@ TEST(LobePlan, RefusesWhatDoesNotFit) {
   EXPECT_THROW(default_plan(2700, 1, false, kHalfRgb), Error);
 }
 
-// A plain source, for twisted and ordered variants, and how well plans of these bytes fit them.
+// A plain source for twisted and ordered variants, and the bytes of its plans.
 constexpr fixtures::Glossy kEven{.a = 10, .b = 10};
 constexpr std::size_t kBytes = 1500, kFewBytes = 180;
 
@@ -125,7 +125,7 @@ TEST(PlanFor, TellsMirrorImagesApartWhereTheSourceDoes) {
                      same = fitted(set, plain_plan());
   for (const FactoredBrdf* brdf : {&told, &same}) EXPECT_TRUE(brdf->isotropic() && brdf->reciprocal());
   EXPECT_LT(relative_error(source, told), 0.3 * relative_error(source, same));
-  // no room for it
+  // Few bytes have no room for the factor.
   EXPECT_EQ(plan_for(source, kFewBytes, 1, kHalfRgb), default_plan(kFewBytes, 1, true, kHalfRgb));
   EXPECT_TRUE(plan_fits(default_plan(kFewBytes, 1, true, kHalfRgb), kFewBytes, 3, kHalfRgb));
 }
@@ -141,7 +141,7 @@ TEST(PlanFor, TellsTheDirectionsApartWhereTheirOrderMatters) {
   EXPECT_TRUE(same.reciprocal());
   EXPECT_LT(relative_error(source, told), 0.02);
   EXPECT_LT(relative_error(source, told), 0.3 * relative_error(source, same));
-  // no room for it
+  // Few bytes have no room for the tables.
   EXPECT_EQ(plan_for(source, kFewBytes, 1, kHalfRgb), default_plan(kFewBytes, 1, true, kHalfRgb));
 }
 

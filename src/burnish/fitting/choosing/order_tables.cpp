@@ -6,7 +6,7 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kPairs = 4000;
-constexpr double kMinError = 0.01;  // below what instruments repeat
+constexpr double kMinError = 0.01;  // instruments repeat no better
 
 }  // namespace
 

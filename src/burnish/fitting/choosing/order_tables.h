@@ -4,9 +4,9 @@
 
 namespace burnish {
 
-/// Whether the order of the directions matters for an isotropic source: exchanging them changes it by more than a
-/// percent (reciprocity_error). Models of such a source have tables that wi alone looks up; one made reciprocal
-/// has none.
+/// True if the order of the directions matters for an isotropic source: exchanging them changes it by more than a
+/// percent (reciprocity_error). Models of these sources have tables that only wi looks up. A source that was made
+/// reciprocal needs none.
 bool order_matters(BrdfRef source);
 
 }  // namespace burnish

@@ -37,7 +37,7 @@ SmoothFit fit_without_overfit(BrdfRef source, const TrainingSet& set, const Lobe
   TrainingOptions anew = drawn;
   anew.pictures = kHeldOutPictures;
   anew.directions = kHeldOutDirections;
-  anew.seed += 2;  // the error that is noted in the end is of seed + 1
+  anew.seed += 2;  // the error that is finally reported uses seed + 1
   TrainingSet held_out = draw_training_set(source, anew);
   held_out.exposure = set.exposure;
   double error = objective(result.fit.model, held_out, options.shares);

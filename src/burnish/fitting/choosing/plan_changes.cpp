@@ -21,7 +21,7 @@ double mean_share(const LobePlan& plan) {
   return sum / static_cast<double>(plan.factors.size());
 }
 
-// Projections that the default plans do not have. A pair stands for both directions.
+// Projections that the default plans do not have. A list of two holds one for either order of the directions.
 std::vector<std::pair<std::string, std::vector<Projection>>> further_projections() {
   std::vector<std::pair<std::string, std::vector<Projection>>> list;
   for (const double n : {-0.5, 0.5, 2.0}) list.push_back({"t", {Projection{.wi = 1, .wo = 1, .n = n}}});
@@ -90,7 +90,7 @@ std::vector<PlanChange> changes_by_projections() {
   return changes;
 }
 
-std::vector<PlanChange> changes_of_coefficients() {  // of skewed directions
+std::vector<PlanChange> changes_of_coefficients() {  // of projections between directions
   std::vector<PlanChange> changes;
   for (const char* name : {"s", "t"})
     for (const double scale : {1.4, 0.7})

@@ -9,14 +9,15 @@
 
 namespace burnish {
 
-/// One way to change a plan; nothing where it does not apply.
+/// One way to change a plan. `apply` returns nothing if the change does not apply.
 struct PlanChange {
   std::string name;
   std::function<std::optional<LobePlan>(const LobePlan&)> apply;
 };
 
-/// The changes that search_plan tries of a plan: one lobe more or fewer; of each factor a larger or smaller share,
-/// another warp, one table for all lobes, and none; factors over further projections; other coefficients of theirs.
+/// The changes that search_plan tries: one lobe more or fewer; for each factor a larger or smaller share, another
+/// warp, one table for all lobes, or its removal; factors over further projections; other coefficients of these
+/// projections.
 std::vector<PlanChange> list_changes(const LobePlan& plan);
 
 }  // namespace burnish

@@ -12,18 +12,18 @@ namespace burnish {
 
 namespace {
 
-// Texels of the models that are tried. Up to about 500 a fit is direct and takes milliseconds; hemispheres
-// need more, and are then solved by iterations.
+// The texels of the models that are tried. Up to about 500 texels a fit is direct and takes milliseconds. Hemispheres
+// need more and are solved by iterations.
 constexpr std::array<std::size_t, 2> kLineSizes{140, 400}, kDiskSizes{160, 1200};
 constexpr int kMaxLine = 1024;  // nodes, finer than any measurement
 constexpr int kMaxDisk = 256;   // nodes along a side
 
-// Nodes of a line p that is fine enough to tell the angles of a lattice apart, 1.4 degrees each, and the part of the
-// texels that it may take: what it takes from a small q it does not give back.
+// The nodes of a line p that distinguishes the angles of a lattice, 1.4 degrees apart, and the largest part of the
+// texels for it. A larger part would harm a small q more than it helps.
 constexpr int kFineP = 64;
 constexpr double kMaxFineP = 0.25;
 
-// Factor sets, the fullest first: the others serve budgets that hold few texels.
+// Factor sets, the fullest first; the smaller ones are for budgets of few texels.
 const std::array<std::string, 5> kFactorSets{"pqmr", "pqm", "pqr", "pq", "q"};
 
 bool is_disk(const PlannedFactor& factor) {
@@ -34,7 +34,7 @@ int least_side(const PlannedFactor& factor) {
   return is_disk(factor) ? 3 : 2;
 }
 
-// Nodes along a side of a factor's table of at most so many nodes.
+// The nodes along a side of a factor's table that has at most so many nodes.
 int side_of(const PlannedFactor& factor, double nodes) {
   const int most = is_disk(factor) ? kMaxDisk : kMaxLine;
   return static_cast<int>(std::min<double>(most, is_disk(factor) ? std::sqrt(nodes) : nodes));
@@ -45,22 +45,22 @@ std::size_t nodes_of(const PlannedFactor& factor, int side) {
   return is_disk(factor) ? n * n : n;
 }
 
-// The factors of one set, as budgets plan them.
+// The factors of one set, with the sizes of the default plan.
 std::vector<PlannedFactor> factors_of(const std::string& set, std::size_t texels, bool isotropic) {
   std::vector<PlannedFactor> chosen;
-  // of so few bytes of one each that no grids are planned
+  // The isotropic plan gets so few bytes that it has no grids.
   const std::size_t bytes = isotropic ? 1 : texels;
   for (PlannedFactor& factor : default_plan(bytes, isotropic ? 1 : 2, isotropic, 1).factors)
     if (set.find(factor.name) != set.npos) chosen.push_back(std::move(factor));
   return chosen;
 }
 
-// The lobe whose tables have at most `texels` texels together: each its share, but as many as it needs, p at least
-// `least_p`, and q what is left. None where they do not suffice.
+// Returns a lobe whose tables have at most `texels` texels together. Each table has its share, but at least the nodes
+// that it needs; p has at least `least_p`, and q takes the rest. None if the texels are too few.
 std::optional<ModelSpec> spec_of(const std::string& set, std::size_t texels, bool isotropic,
                                  int least_p = 0) {
   const std::vector<PlannedFactor> factors = factors_of(set, texels, isotropic);
-  // sides by share, q's by what is left
+  // Sides follow from shares; q's side follows from the rest.
   double shares = 0;
   for (const PlannedFactor& factor : factors) shares += factor.share;
   std::vector<int> sides;
@@ -79,7 +79,7 @@ std::optional<ModelSpec> spec_of(const std::string& set, std::size_t texels, boo
   if (side < least_side(*q)) return std::nullopt;
   sides[static_cast<std::size_t>(q - factors.begin())] = side;
 
-  // one lobe of all
+  // All factors form one lobe.
   ModelSpec spec;
   spec.lobes.emplace_back();
   for (std::size_t k = 0; k < factors.size(); ++k) {
@@ -95,21 +95,23 @@ std::optional<ModelSpec> spec_of(const std::string& set, std::size_t texels, boo
   return spec;
 }
 
-// Nodes of the factors of a material that backscatters, at most; the sides of k and of hemispheres are equal.
+// The most nodes of the factors of a material that backscatters; k and hemispheres have equal sides.
 struct RetroSizes {
   int p = 48, q = 64, k = 24, b_h = 16, b_d = 40, a_d = 32, a_phi = 10;
 };
-constexpr int kRetroDiskP = 16, kRetroDiskQ = 32;  // p and q of anisotropic ones
+constexpr int kRetroDiskP = 16, kRetroDiskQ = 32;  // sides of p and q of anisotropic materials
 
-// Its factors where fetches, one a letter, allow no more; p stands twice. Cross-validated relative errors of a tape:
-// .170 of b by itself, .112 with k, .108 with q or .100 with p, .100 with both, .091 of all.
+// The lobe's factors for a limit of fetches, one a letter; p stands twice. Cross-validated relative errors of a tape
+// were .170 with b alone, .112 with k, .108 with q or .100 with p, .100 with both, and .091 with all.
 constexpr std::array<std::string_view, 6> kRetroFactors{"ppqkba", "ppqkb", "ppkb", "qkb", "kb", "b"};
 
-// p(wo) p(wi) q(h) k(theta_m,theta_d) b(theta_h,theta_d) a(theta_d,phi_d), their nodes crowded at wi = wo, where b
-// follows the angle of both, and a what is not round about it. p and q are hemispheres where it is anisotropic.
-// Near wi = wo nodes of b and a are evenly spread in theta_d, as what is smooth over them has to be: over its root, a
-// lobe of a flat top is so steep at the samples about it that the smoothest lobe is up to twice as high between them.
-// Of these factors alone.
+// A lobe of the given factors among p(wo) p(wi) q(h) k(theta_m,theta_d) b(theta_h,theta_d) a(theta_d,phi_d), with
+// denser nodes at wi = wo. There b follows the angle of both directions, and a the deviation from a round lobe. For
+// an anisotropic material, p and q are hemispheres.
+//
+// Near wi = wo, nodes of b and a are evenly spaced in theta_d, so that tables that are smooth over their nodes are
+// smooth over theta_d. Nodes spaced by its root make a flat-topped lobe so steep at the neighbouring samples that the
+// smoothest lobe is up to twice as high between them.
 ModelSpec retro_spec(const RetroSizes& sizes, bool isotropic, std::string_view factors) {
   const Warp crowded{WarpKind::power, 0.5}, even_at_zero{WarpKind::rational, 0.08};
   const auto polar = [&](const char* name, int nodes) {
@@ -123,12 +125,13 @@ ModelSpec retro_spec(const RetroSizes& sizes, bool isotropic, std::string_view f
         .layout = {
             .shape = TableShape::grid, .width = width, .height = height, .warp = warp, .warp_y = warp_y}};
   };
-  const Warp highlight = factors.find('q') == factors.npos ? crowded : Warp{};  // b's alone without q
+  // Without q, b alone follows the highlight.
+  const Warp highlight = factors.find('q') == factors.npos ? crowded : Warp{};
   std::vector<ModelSpec::TableSpec> tables = {polar("p", sizes.p), polar("q", sizes.q),
                                               grid("k", sizes.k, sizes.k, crowded, crowded),
                                               grid("b", sizes.b_h, sizes.b_d, highlight, even_at_zero),
                                               grid("a", sizes.a_d, sizes.a_phi, even_at_zero, Warp{})};
-  // about wi = wo, where scans coarser than the lobe have no sample
+  // These tables are even about wi = wo, where scans coarser than the lobe have no sample.
   tables[2].even_y = tables[3].even_y = tables[4].pole_x = true;
   const std::vector<FactorUse> uses = {
       {.table = 0, .projection = kProjectWo, .projection_y = {}},

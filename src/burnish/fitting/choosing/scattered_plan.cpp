@@ -19,11 +19,12 @@ namespace {
 
 constexpr std::size_t kFolds = 5;
 
-// Smoothness is common to all channels: a few tell it.
+// All channels share one smoothness, so that a few channels are enough to find it.
 constexpr std::size_t kTrialChannels = 3;
 
-// Of this lobe for many samples, as trials find it for a tape's 7,400. Trials on many would leave it rougher: they
-// are at few incidences, all of which every fold has, and nothing tells how wild it is between them.
+// The smoothness of the lobe about wi = wo for many samples, as trials found it for a tape with 7,400. Trials on many
+// samples would choose a rougher lobe. Those samples are at few incidences, which every fold contains, so errors
+// between the incidences would not be noticed.
 constexpr double kRetroSmooth = 1e-7;
 
 std::size_t texels_of(const ModelSpec& spec) {
@@ -49,7 +50,7 @@ SampleSource some_channels(const SampleSource& source) {
   return part;
 }
 
-/// Compares models by what they predict.
+/// Compares models by their predictions.
 class Trials {
  public:
   Trials(const SampleSource& source, bool fixed_smooth, const HomomorphicOptions& options)
@@ -57,10 +58,10 @@ class Trials {
     options_.progress = nullptr;
   }
 
-  /// From now on.
+  /// Sets the format of all later trials.
   void store_as(TableFormat format) { options_.format = format; }
 
-  /// The first model, with its smoothness if that is given.
+  /// Tries the first model, with the given smoothness if there is one.
   ScatteredPlan start(ModelSpec spec, std::optional<double> smooth,
                       const std::function<void(double)>& progress) {
     if (smooth) return attempt(std::move(spec), *smooth);
@@ -71,8 +72,8 @@ class Trials {
     return {.spec = std::move(spec), .smooth = best.smooth, .error = best.error, .format = options_.format};
   }
 
-  /// Another model, from the smoothness of one that is known, or from this one if that is better, by decades either
-  /// way as long as that helps.
+  /// Tries another model, from the smoothness of a known one, or from `smooth` if that is better. Then changes the
+  /// smoothness by decades in either direction as long as that helps.
   ScatteredPlan near(const ModelSpec& spec, const ScatteredPlan& known, std::optional<double> smooth = {}) {
     ModelSpec alike = spec;
     for (ModelSpec::TableSpec& table : alike.tables)
@@ -95,7 +96,7 @@ class Trials {
     return {.spec = std::move(spec), .smooth = smooth, .error = error, .format = options_.format};
   }
 
-  // Changes by decades either way as long as that helps.
+  // Applies a change by decades in either direction as long as it helps.
   template <class Change>
   void climb(ScatteredPlan& best, const Change& change) {
     constexpr int kDecades = 4;
@@ -108,7 +109,7 @@ class Trials {
         better = *trial.error < *best.error;
         if (better) best = std::move(trial);
       }
-      if (moved > 0) return;  // the other way would undo it
+      if (moved > 0) return;  // the other direction would undo it
     }
   }
 
@@ -117,17 +118,17 @@ class Trials {
   HomomorphicOptions options_;
 };
 
-// The lobe about wi = wo, where options ask for one and bytes and fetches hold it.
+// The lobe about wi = wo, if options ask for one and bytes and fetches hold it.
 std::optional<ModelSpec> asked_retro_spec(const SampleSource& source, std::size_t bytes,
                                           const HomomorphicOptions& options, int fetches) {
   if (options.backscatter <= 0) return std::nullopt;
   return retro_spec_within(bytes, source, options.format, fetches);
 }
 
-// Of many samples: as fine as the bytes hold, or the lobe about wi = wo where that predicts better.
+// The plan for many samples: a model as fine as the bytes hold, or the lobe about wi = wo if it predicts better.
 ScatteredPlan plan_many(const SampleSource& source, std::size_t bytes, std::optional<double> smooth,
                         const HomomorphicOptions& options, int fetches) {
-  // as choose_smoothness tries many
+  // Trials are the same as those of choose_smoothness for many samples.
   const auto error_at = [&](const ModelSpec& spec, double smoothness) {
     HomomorphicOptions trial = options;
     trial.smooth = smoothness;
@@ -164,7 +165,7 @@ ScatteredPlan plan_many(const SampleSource& source, std::size_t bytes, std::opti
 ScatteredPlan plan_scattered(const SampleSource& source, std::size_t bytes, std::optional<double> smooth,
                              std::optional<TableFormat> format, const HomomorphicOptions& options,
                              int fetches) {
-  // the formats to choose from, the first one first
+  // The formats to choose from; the first is the default.
   std::vector<TableFormat> formats{format.value_or(TableFormat::half)};
   if (!format && source.channels == 3) formats.push_back(TableFormat::rgb9e5);
   const auto least = [&](TableFormat of) {
@@ -180,7 +181,7 @@ ScatteredPlan plan_scattered(const SampleSource& source, std::size_t bytes, std:
   chosen.format = formats.front();
   if (source.distinct > kManySamples) return plan_many(source, bytes, smooth, chosen, fetches);
 
-  // from the coarsest to finer ones as long as that helps, or every set of factors
+  // The models go from coarse to fine as long as that helps, or through all sets of factors.
   const SampleSource part = some_channels(source);
   Trials trials(part, smooth.has_value(), chosen);
   const std::vector<std::string> sets = scattered_factor_sets(fetches, source.isotropic);
@@ -189,19 +190,20 @@ ScatteredPlan plan_scattered(const SampleSource& source, std::size_t bytes, std:
   const auto best = [&] { return std::ranges::min_element(found, {}, &ScatteredPlan::error); };
   for (auto spec = specs.begin() + 1; spec != specs.end(); ++spec)
     found.push_back(trials.near(*spec, *best()));
-  // what holds no lobe about wi = wo may be best as a constant, whose smoothness says nothing of one that does
+  // If the models without a lobe about wi = wo are best as constants, their smoothness is no guide for this lobe. So
+  // kRetroSmooth is tried too.
   if (const auto spec = asked_retro_spec(source, bytes, chosen, fetches)) {
     found.push_back(trials.near(*spec, *best(), kRetroSmooth));
     specs.push_back(*spec);
   }
-  // the smaller format where it resolves more
+  // The smaller format is tried if it resolves more.
   for (auto other = formats.begin() + 1; other != formats.end(); ++other) {
     trials.store_as(*other);
     const ModelSpec finest = scattered_specs(source, bytes, *other, sets).back();
     if (texels_of(finest) > texels_of(specs.back())) found.push_back(trials.near(finest, *best()));
   }
 
-  // the errors of all channels
+  // Finally the errors of all channels are compared.
   if (part.channels != source.channels)
     for (ScatteredPlan& plan : found) {
       chosen.smooth = plan.smooth;

@@ -28,7 +28,7 @@ namespace {
 using ::testing::DoubleNear;
 using ::testing::Each;
 
-// A measured highlight in so many channels, the first the darkest.
+// A measured highlight in several channels, of which the first is the darkest.
 Source scattered(std::size_t channels, const char* brdf = "ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5,kd=0.2",
                  std::size_t count = 60) {
   const Samples grey = measure(parse_analytic(brdf), {.count = count, .noise = 0.1, .seed = 3});
@@ -57,7 +57,7 @@ TEST(ScatteredPlan, KeepsEveryBudget) {
         if (bytes < least(source, format.value_or(TableFormat::half))) continue;
         const Fit made = fit(source, options);
         EXPECT_LE(made.bytes(), bytes) << channels;
-        // of few samples fine models predict no better
+        // With few samples, fine models predict no better.
         EXPECT_GE(made.bytes(), std::min<std::size_t>(bytes / 2, 140 * channels))
             << channels << " channels, " << bytes << " bytes";
       }
@@ -100,7 +100,7 @@ TEST(ScatteredPlan, ChoosesASmoothnessThatPredicts) {
   const double chosen = error({});
   EXPECT_LT(chosen, error(1e-10));
   EXPECT_LT(chosen, error(1));
-  EXPECT_LT(chosen, 0.2);  // the noise alone errs by .1 sqrt(2 / pi)
+  EXPECT_LT(chosen, 0.2);  // the noise alone gives .1 sqrt(2 / pi)
 }
 
 TEST(ScatteredPlan, DoesNotDependOnTheNumberOfThreads) {
@@ -127,7 +127,8 @@ struct PeakedBrdf {
 
 constexpr double kIncidences_deg[] = {15, 30, 60};
 
-// Three incidences, dense around the lobe, as instruments scan it: rings a degree apart and then four, or finer.
+// Scans of three incidences, dense around the lobe, as instruments take them: rings one degree apart and then four,
+// or finer.
 Samples scanned(const PeakedBrdf& brdf, int fineness = 1) {
   Samples samples{1, true, {}, {}};
   for (const double theta_deg : kIncidences_deg) {
@@ -156,7 +157,7 @@ TEST(ScatteredPlan, TellsALobeAboutTheLightFromAHighlight) {
   EXPECT_FALSE(backscatters(from_samples(forth, false)));
 }
 
-// All of the hemisphere at each incidence, every so many degrees.
+// Samples on the whole hemisphere at each incidence, `step_deg` degrees apart.
 Samples gridded(BrdfRef brdf, int step_deg) {
   Samples samples{1, true, {}, {}};
   std::vector<double> f(brdf.channels());
@@ -185,8 +186,8 @@ TEST(ScatteredPlan, TellsWideLobesFromCoarseScans) {
   }
 }
 
-/// Rows of a lattice, as a goniometer takes them: lights every 10 degrees, viewers between them, every other
-/// one of which reads too high and the rest too low.
+/// Rows of a lattice, as a goniometer takes them: lights every 10 degrees and viewers between them. Every other
+/// viewer reads too high and the rest too low.
 Samples lattice(double misread) {
   const AnalyticBrdf gloss = parse_analytic("ggx:alpha_x=0.4,alpha_y=0.4,f0=0.5,kd=0.3");
   Samples samples{1, true, {}, {}};
@@ -232,7 +233,8 @@ FactoredBrdf planned(const Samples& samples, std::optional<double> smooth, int r
   return fit_homomorphic(source, plan.spec, options).brdf;
 }
 
-// The model at wi = wo over the truth, at each incidence: wi from the azimuth `from`, wo from `side` around it.
+// The ratio of the model to the truth at wi = wo, at each incidence. wi lies at the azimuth `from`, and wo next to it
+// in the direction `side`.
 std::vector<double> heights_of_peak(const FactoredBrdf& model, BrdfRef brdf, double side = 0,
                                     double from = 0) {
   constexpr double kApart = 1e-9;
@@ -254,8 +256,8 @@ TEST(ScatteredPlan, HoldsThePeakAboutTheLight) {
   EXPECT_THAT(heights_of_peak(planned(scanned(brdf), 1e-7, 2), brdf), Each(DoubleNear(1, 0.05)));
 }
 
-// One sample at the peak of each incidence, none within five degrees: nothing but the sample itself tells from where
-// the peak is looked at.
+// Each incidence has one sample at the peak and none within five degrees. Only that sample tells how the peak looks
+// from every side.
 TEST(ScatteredPlan, HoldsThePeakOfACoarseScanFromEverySide) {
   const PeakedBrdf brdf;
   const FactoredBrdf model = planned(gridded(brdf, 5), 1e-6, 2);
@@ -263,7 +265,7 @@ TEST(ScatteredPlan, HoldsThePeakOfACoarseScanFromEverySide) {
     EXPECT_THAT(heights_of_peak(model, brdf, side), Each(DoubleNear(1, 0.05))) << side;
 }
 
-/// The same, higher where the half vector is along x.
+/// The same lobe, but higher if the half vector is along x.
 struct GrainedBrdf {
   PeakedBrdf even;
   std::size_t channels() const noexcept { return 1; }
@@ -306,7 +308,8 @@ TEST(ScatteredPlan, HoldsThePeakOfManySamplesToo) {
   EXPECT_THAT(heights_of_peak(planned(samples, {}, 0, 4096), brdf), Each(DoubleNear(1, 0.03)));
 }
 
-// Of rings a degree apart, where without the lobe about wi = wo a constant predicts best, and between them.
+// The lobe is found from rings a degree apart, and holds on them and between them. Without a lobe about wi = wo a
+// constant predicts these rings best.
 TEST(ScatteredPlan, FindsALobeAsNarrowAsTheRings) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const PeakedBrdf brdf{true, radians(1)};

@@ -19,27 +19,27 @@ namespace burnish {
 
 namespace {
 
-// A trial is fitted to every kSearchPart-th pair in few steps and judged on as many others.
+// A trial is fitted to every kSearchPart-th pair in few steps and judged on an equal number of other pairs.
 constexpr std::size_t kSearchPart = 6;
 constexpr int kSearchSteps = 8;
 constexpr int kMaxRounds = 2;
-// A change must pay for its risk: gains below are within what another draw of pairs would give.
+// A change must gain at least this: another draw of pairs would change errors as much.
 constexpr double kMinGain = 0.01;
-// Lobes of an anisotropic source are judged by models of no more texels than there are so many pairs for.
+// Models that judge an anisotropic source's lobes have at most one texel for this many pairs.
 constexpr std::size_t kJudgedPairs = 8;
 constexpr int kMaxAnisotropicLobes = 4;
 
-/// A part of the pairs to fit plans to and another to judge them on. The number of steps is left to each.
+/// A part of the pairs that plans are fitted to and another that judges them. Each trial sets its number of steps.
 Heat heat_of_plans(const TrainingSet& set, const RefineOptions& options) {
   return {.parts = TrialParts(set, kSearchPart), .options = options, .shares = options.shares};
 }
 
-/// The search of search_plan.
+/// Runs search_plan.
 class PlanSearch {
  public:
   PlanSearch(const TrainingSet& set, const SearchOptions& options)
       : set_(set), options_(options), grey_(heat_of_plans(mean_of_channels(set), options.refine)) {
-    // told again at every step, so that a callback can end the search
+    // Progress is reported at every step, so that a callback can end the search.
     grey_.options.progress = [this](double) {
       if (std::this_thread::get_id() == caller_) report();
     };
@@ -64,8 +64,8 @@ class PlanSearch {
     return plan_fits(plan, options_.bytes, set_.channels, options_.texel_bytes);
   }
 
-  /// Where the lobes stay, a plan starts from the functions that are known. Throws Error where the bytes do not
-  /// hold it.
+  /// Fits a plan. It starts from known functions if the number of lobes is the same. Throws Error if the bytes do not
+  /// hold the plan.
   Candidate fit(const LobePlan& plan, const Candidate* from) const {
     Candidate result{.spec = plan_to_spec(plan, options_.bytes, set_.channels, options_.texel_bytes),
                      .plan = plan};
@@ -82,12 +82,12 @@ class PlanSearch {
     return result;
   }
 
-  /// One round: every change alone, then together those that pay. False where none does.
+  /// Runs one round: every change alone, then the useful ones together. False if none is useful.
   bool improve(int round, Candidate& best) {
     const std::vector<PlanChange> changes = list_changes(*best.plan);
     const std::vector<double> values = try_alone(changes, best, round);
 
-    // the most rewarding first
+    // The changes with the best values come first.
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < changes.size(); ++k)
       if (values[k] < best.error - kMinGain) order.push_back(k);
@@ -107,7 +107,7 @@ class PlanSearch {
     return std::ranges::any_of(kept, [](bool b) { return b; });
   }
 
-  /// The objective of each change, infinite where it does not apply or the bytes do not hold it.
+  /// The objective of each change; infinite if it does not apply or the bytes do not hold it.
   std::vector<double> try_alone(const std::vector<PlanChange>& changes, const Candidate& best, int round) {
     std::vector<std::optional<LobePlan>> changed;
     for (const PlanChange& change : changes) {
@@ -128,7 +128,7 @@ class PlanSearch {
     return values;
   }
 
-  /// Keeps tables of one channel where those cost less than they save; only the colours can tell.
+  /// Uses tables of one channel if they save more than they cost; only trials in colour show that.
   void share_channels() {
     Heat colour = heat_of_plans(set_, options_.refine);
     colour.options.progress = grey_.options.progress;
@@ -138,7 +138,7 @@ class PlanSearch {
       plans.push_back(result_.plan);
       plans.back().factors[k].grey = true;
     }
-    std::vector<char> held(plans.size());  // by the bytes
+    std::vector<char> held(plans.size());  // true if the bytes hold the plan
     for (std::size_t k = 0; k < plans.size(); ++k) held[k] = fits(plans[k]);
     std::vector<double> values(plans.size(), INFINITY);
     for_each_chunk(plans.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
@@ -158,7 +158,7 @@ class PlanSearch {
     if (gained) result_.plan = plans[best];
   }
 
-  /// Keeps what a trial throws for drop_failures(), unless it is what ends the search.
+  /// Runs a trial and keeps its exception for drop_failures(). If the search was ended, rethrows it.
   template <class Trial>
   void attempt(const Trial& trial) {
     try {
@@ -169,7 +169,7 @@ class PlanSearch {
       failures_.push_back(std::current_exception());
     }
   }
-  /// Trials that have no solution are none; rethrows what is no Error.
+  /// Ignores failed trials that threw Error; rethrows any other exception.
   void drop_failures() {
     for (const std::exception_ptr& failure : std::exchange(failures_, {})) {
       try {
@@ -197,7 +197,7 @@ class PlanSearch {
   double share_done_ = 0;
   std::atomic<bool> ended_ = false;  ///< by the callback
   std::mutex mutex_;
-  std::vector<std::exception_ptr> failures_;  ///< guarded by it
+  std::vector<std::exception_ptr> failures_;  ///< guarded by mutex_
 };
 
 }  // namespace
@@ -207,7 +207,7 @@ LobePlan plan_for(BrdfRef source, const TrainingSet& set, std::size_t bytes, int
   LobePlan best = plan_for(source, bytes, lobes, texel_bytes);
   if (source.isotropic() || lobes > 0) return best;
 
-  // Each number of lobes is fitted to part of the grey set and judged on another.
+  // Each number of lobes is fitted to part of the grey set and judged on another part.
   Heat heat = heat_of_plans(mean_of_channels(set), options);
   const TrainingSet& fitted = heat.parts.fitted;
   const std::size_t judged_bytes = std::min(bytes, texel_bytes * fitted.size() / kJudgedPairs);

@@ -11,14 +11,14 @@ namespace burnish {
 struct SearchOptions {
   std::size_t bytes = 2700, texel_bytes = 6;
   RefineOptions refine;  ///< of every trial
-  /// Called with shares of the work expected that never fall, from the calling thread.
+  /// Called from the calling thread with the share of the expected work that is done; it never falls.
   std::function<void(double fraction)> progress;
 };
 
 /// A change of the plan that was tried.
 struct SearchTrial {
   std::string change;    ///< "start", "lobes 4", "q share x 1.4", "+ s(wi+wo+0.5n)", "- m", …
-  double objective = 0;  ///< of PictureLoss, on pairs that the trial was not fitted to
+  double objective = 0;  ///< PictureLoss on pairs that the trial was not fitted to
   bool kept = false;
 };
 
@@ -27,18 +27,18 @@ struct SearchResult {
   std::vector<SearchTrial> trials;
 };
 
-/// plan_for, the lobes of an anisotropic source as many as serve it best: two, three or four, each fitted to
-/// part of the set in few steps, at fewer bytes where that has too few pairs, and judged on another.
-/// options.progress is called with rising shares of those trials. Throws Error as default_plan does.
+/// Returns plan_for with the number of lobes that serves an anisotropic source best: two, three or four. Each is
+/// fitted in few steps to part of the set and judged on another part, at fewer bytes if that part has too few pairs.
+/// options.progress is called with rising shares of these trials. Throws Error as default_plan does.
 LobePlan plan_for(BrdfRef source, const TrainingSet& set, std::size_t bytes, int lobes,
                   std::size_t texel_bytes, const RefineOptions& options);
 
-/// Finds the factors, projections, warps, sizes and number of lobes that serve the data best at a number of
-/// bytes, the future work that [HomomorphicBrdf] names: more or fewer lobes, larger or smaller shares of
-/// texels, other warps, factors left out, factors added over further projections (affine combinations, whose
-/// coefficients are then refined). Each round tries every change alone, fitted to part of the pairs and
-/// judged on another, and then keeps those that go on paying off together, the most rewarding first; two
-/// rounds, or until nothing changes. Works on the mean of the channels. Deterministic.
+/// Finds the factors, projections, warps, sizes and number of lobes that serve the data best at a number of bytes,
+/// which [HomomorphicBrdf] names as future work. It tries more or fewer lobes, larger or smaller shares of texels,
+/// other warps, and removed factors. It also adds factors over further projections (affine combinations, whose
+/// coefficients are then refined). Each round tries every change alone, fitted to part of the pairs and judged on
+/// another part. It then keeps those that still pay off together, the best first. There are two rounds, or fewer if
+/// nothing changes. The search works on the mean of the channels. Deterministic.
 SearchResult search_plan(const TrainingSet& set, const LobePlan& start, const SearchOptions& options);
 
 }  // namespace burnish

@@ -13,7 +13,7 @@ namespace {
 
 using fixtures::kHalfRgb;
 
-// Brushed metal along x under lacquer along y, which shows at grazing angles alone.
+// Brushed metal along x under lacquer along y, which is visible only at grazing angles.
 struct Crossed {
   AnalyticBrdf one = parse_analytic("ggx:alpha_x=0.1,alpha_y=0.5,f0=0.9,kd=0.1"),
                other = parse_analytic("ggx:alpha_x=0.5,alpha_y=0.1,f0=0.01,kd=0");
@@ -50,7 +50,7 @@ TEST(PlanFor, GivesAnAnisotropicSourceTheLobesItHas) {
 
 TEST(Search, ImprovesAPlanThatMissesAFactorAndRepeatsItself) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2,kd=0.2,f0=0.3");
-  const int share = BURNISH_SANITIZED ? 4 : 1;  // of what takes sanitizers long
+  const int share = BURNISH_SANITIZED ? 4 : 1;  // sanitizers are slow
   const TrainingSet set =
       draw_training_set(ggx.ref(), {.pictures = 2000 / share, .directions = 4000 / share});
   LobePlan start{.lobes = 1,

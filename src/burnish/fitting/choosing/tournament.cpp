@@ -13,7 +13,7 @@ namespace burnish {
 
 TrainingSet part_of(const TrainingSet& set, std::size_t first, std::size_t step) {
   TrainingSet shifted = set;
-  // drop the first pairs of both kinds, so that thinning begins elsewhere
+  // The first pairs of both kinds are dropped, so that thinning begins elsewhere.
   const auto channels = static_cast<std::ptrdiff_t>(set.channels);
   const auto drop = [&](std::size_t at) {
     const auto n = static_cast<std::ptrdiff_t>(at), m = static_cast<std::ptrdiff_t>(first);

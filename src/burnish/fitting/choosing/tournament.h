@@ -15,33 +15,33 @@
 
 namespace burnish {
 
-/// Every step-th pair, beginning at `first`.
+/// Returns every step-th pair, beginning at `first`.
 TrainingSet part_of(const TrainingSet& set, std::size_t first, std::size_t step);
 
-/// The set with one channel, the mean of its channels.
+/// Returns the set with one channel, the mean of its channels.
 TrainingSet mean_of_channels(const TrainingSet& set);
 
-/// Two parts of a set, each of every step-th pair, that have no pair in common.
+/// Two parts of a set, each of every step-th pair, without a common pair.
 struct TrialParts {
   /// Precondition: step >= 2.
   TrialParts(const TrainingSet& set, std::size_t step);
 
-  TrainingSet fitted;  ///< what candidates are fitted to
-  TrainingSet judged;  ///< what they are judged on
+  TrainingSet fitted;  ///< pairs that candidates are fitted to
+  TrainingSet judged;  ///< pairs that judge them
 };
 
 /// A model that takes part in a tournament.
 struct Candidate {
-  ModelSpec spec;                                          ///< what is chosen: tables with all their nodes
-  std::optional<LobePlan> plan = {};                       ///< which gave the spec, of lobes
-  LogModel fit = {};                                       ///< as far as it has come, maybe at fewer nodes
-  double error = std::numeric_limits<double>::infinity();  ///< the last heat's; infinite before one
+  ModelSpec spec;                                          ///< tables with all their nodes
+  std::optional<LobePlan> plan = {};                       ///< the plan of the spec, for lobes
+  LogModel fit = {};                                       ///< the present fit, maybe at fewer nodes
+  double error = std::numeric_limits<double>::infinity();  ///< in the last heat; infinite before one
 };
 
-/// How candidates compete: each is fitted to one part of the pairs and judged on the other.
+/// The rules of a competition: each candidate is fitted to one part of the pairs and judged on the other.
 struct Heat {
   TrialParts parts;
-  RefineOptions options;      ///< of what fits them
+  RefineOptions options;      ///< of the fits
   ErrorTerms shares;          ///< of the objective that judges them
   double worth_of_fetch = 0;  ///< >= 0; a fetch must lower the objective by this share of shares.sum()
 
@@ -55,35 +55,35 @@ struct Heat {
             const std::function<void(double)>& progress = {}) const;
 };
 
-/// Those of the least errors, at most `count`, the best first.
+/// Returns the candidates of the least errors, at most `count`, the best first.
 std::vector<Candidate> finalists(std::vector<Candidate> candidates, std::size_t count);
 
-/// The one of the least error, the first of equal ones. Precondition: not empty.
+/// Returns the candidate of the least error, the first of equal ones. Precondition: not empty.
 Candidate& winner(std::span<Candidate> candidates);
 
 /// A knee's factor: the error of the model that is chosen may be this many times the least.
 inline constexpr double kKneeFactor = 1.02;
 
-/// What the candidate says of its number of fetches: its error is exp(error / shares.sum()).
+/// The trial that reports a candidate's number of fetches. Its error is exp(error / shares.sum()).
 FetchTrial fetch_trial_of(const Candidate& candidate, const ErrorTerms& shares);
 
 /// Candidates that differ in fetches.
 struct FetchTrials {
   std::vector<FetchTrial> trials;     ///< by rising fetches
-  std::vector<Candidate> candidates;  ///< theirs
+  std::vector<Candidate> candidates;  ///< of these trials
 };
-/// Of candidates with as many fetches the best one, of each number of fetches.
+/// For each number of fetches, returns the best of its candidates.
 FetchTrials best_of_each_fetch_count(std::vector<Candidate> candidates, const ErrorTerms& shares);
 
-/// The trial of the fewest fetches whose error is within kKneeFactor of the least. Precondition: at least one trial, by
-/// rising fetches.
+/// Returns the trial of the fewest fetches whose error is within kKneeFactor of the least. Precondition: at least one
+/// trial, by rising fetches.
 const FetchTrial& trial_at_knee(std::span<const FetchTrial> trials);
 
-/// The options of a trial: tables of floats and so many steps, without progress.
+/// Options for a trial: tables of floats, at most `steps` steps, no progress.
 RefineOptions in_few_steps(RefineOptions options, int steps);
 
-/// Calls work(k) of `count` trials, on all threads, and as they end `progress`, if it is not empty, with the share that
-/// is done, on the calling thread.
+/// Calls work(k) for `count` trials on all threads. Calls `progress`, if it is not empty, on the calling thread with
+/// the share that is done.
 void for_each_trial(std::size_t count, const std::function<void(double)>& progress,
                     const std::function<void(std::size_t)>& work);
 

@@ -42,7 +42,7 @@ TEST(Tournament, PartsKeepWhatBelongsToAPair) {
     EXPECT_EQ(part.pairs[k].wo.z, set.pairs[i].wo.z);
     for (std::size_t c = 0; c < set.channels; ++c)
       EXPECT_EQ(part.values[k * set.channels + c], set.values[i * set.channels + c]);
-    // weights are those of the pairs, to a factor of each kind
+    // Weights are those of the pairs, up to one factor for each kind.
     const std::size_t first = k < part.picture_count ? 0 : part.picture_count,
                       from = k < part.picture_count ? 3 : set.picture_count + 3;
     EXPECT_FLOAT_EQ(part.weights[k] * set.weights[from], part.weights[first] * set.weights[i]);
@@ -78,7 +78,7 @@ TEST(Tournament, TrialsAreEachMadeOnceAndToldWithinTheirPart) {
   EXPECT_EQ(few.format, TableFormat::single);
 }
 
-/// Candidates of "q(h)" and, one after another, a table more; each reads one more. Their errors are as given.
+/// Candidates of "q(h)" with 0, 1, ... further tables, each of which adds one read. Their errors are given.
 std::vector<Candidate> candidates_of(const std::vector<double>& errors) {
   std::vector<Candidate> candidates;
   std::string model = "q(h)";
@@ -126,7 +126,7 @@ TEST(Tournament, TheKneeIsTheFewestFetchesNearTheLeastError) {
   const ErrorTerms shares{.relative = 1};
   std::vector<Candidate> candidates = candidates_of({std::log(0.2), std::log(0.1005), std::log(0.1)});
   candidates.push_back(candidates[1]);
-  candidates.back().error = std::log(0.5);  // as many fetches, and worse
+  candidates.back().error = std::log(0.5);  // the same fetches, but worse
   candidates[2].plan = LobePlan{};
   const FetchTrials tried = best_of_each_fetch_count(candidates, shares);
   ASSERT_EQ(tried.trials.size(), 3u);

@@ -13,33 +13,34 @@ namespace burnish {
 
 namespace {
 
-// Of the texels: lines along theta_h, which rings of films need, and along other angles, which are smooth.
+// Shares of the texels: lines along theta_h, which rings of films need; lines along other angles, which are smooth;
+// and grids.
 constexpr double kRingShare = 0.07, kLineShare = 0.016, kGridShare = 0.14;
 constexpr int kMinLineNodes = 6, kMaxRingNodes = 512, kMaxVolumeLineNodes = 64;
-// Of a grid b(theta_d,theta_h): its share of the texels, nodes along theta_d for each along theta_h, most texels, least
-// nodes along theta_d; the texels of a model from which on it is tried.
+// A grid b(theta_d,theta_h): its share of the texels, its nodes along theta_d for each along theta_h, its most
+// texels, and its least nodes along theta_d. Models of kMinGridTexels or more try it.
 constexpr double kHighlightShare = 0.2, kHighlightAspect = 1 / 1.5, kMaxHighlightTexels = 800;
 constexpr int kMinHighlightNodes = 6;
 constexpr std::size_t kMinGridTexels = 600;
 constexpr Warp kVolumeDeviationWarp{WarpKind::power, 0.5}, kVolumeSkewWarp{WarpKind::power, 0.7};
-// Of what the order of the directions changes: nodes along theta_i and a share.
+// The grid for the order of the directions: its nodes along theta_i, and its share.
 constexpr int kVolumeOrderNodes = 8;
 constexpr double kVolumeOrderShare = 0.25;
 
-// How a volume's nodes are shared out: the best differ among materials.
+// The distributions of a volume's nodes that are tried; the best one differs among materials.
 constexpr VolumeForm kVolumeForms[] = {{30, 20, 6}, {40, 15, 6}, {24, 24, 6}, {20, 30, 6}};
-constexpr double kBothSides = 2;  // times as many along the azimuth where it tells mirror images apart
-// Of theta_d where a lobe stands at 0.
+constexpr double kBothSides = 2;  // times as many along the azimuth if it distinguishes mirror images
+// The spacing of theta_d if a lobe stands at 0.
 constexpr Warp kRetroWarp{WarpKind::power, 0.5};
 
-// What stands beside the volume first: a line along theta_h, for rings, or a grid over theta_h and theta_d.
+// The first table beside the volume: a line along theta_h, for rings, or a grid over theta_h and theta_d.
 enum class Beside { line, grid };
 
 Warp difference_warp(const SourceTraits& traits) noexcept {
   return traits.retro ? kRetroWarp : Warp{};
 }
 
-/// Adds a model's tables and their uses, all of one lobe.
+/// Adds a model's tables and their uses; all belong to one lobe.
 class SpecBuilder {
  public:
   void add(const char* name, TableLayout layout, const std::vector<FactorUse>& uses) {
@@ -62,7 +63,7 @@ class SpecBuilder {
   ModelSpec spec_;
 };
 
-/// The tables beside a volume, in the order in which fetches are spent on them.
+/// The tables beside a volume, in the order in which they use up fetches.
 class TablesBeside {
  public:
   TablesBeside(const CostLimit& limit, const SourceTraits& traits)
@@ -122,12 +123,13 @@ class TablesBeside {
   SpecBuilder builder_;
 };
 
-/// The tables that a number of fetches has room for; the volume takes what the others leave.
+/// Returns the model whose tables a number of fetches allows; the volume takes the texels that the other tables
+/// leave.
 ModelSpec volume_spec(VolumeForm form, Beside beside, const CostLimit& limit, std::size_t channels,
                       const SourceTraits& traits) {
   SpecBuilder builder = TablesBeside(limit, traits).build(beside);
 
-  // The volume has no nodes yet: the count so far is what the other tables and all numbers take.
+  // The volume has no nodes yet, so this count is that of the other tables and all numbers.
   builder.add("g", {.shape = TableShape::volume, .warp = kHalfRootWarp, .warp_y = difference_warp(traits)},
               {{.projection = kProjectHalf,
                 .projection_y = kProjectDifference,
@@ -136,7 +138,7 @@ ModelSpec volume_spec(VolumeForm form, Beside beside, const CostLimit& limit, st
   const std::size_t taken = model_bytes(spec, channels, limit.texel_bytes);
   const std::size_t rest = limit.bytes > taken ? (limit.bytes - taken) / limit.texel_bytes : 0;
 
-  // It takes the rest.
+  // The volume takes the rest.
   if (traits.twisted) form.azimuth *= kBothSides;
   TableLayout& volume = spec.tables.back().layout;
   volume = volume_of(form, static_cast<double>(rest));
@@ -163,14 +165,14 @@ std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit) {
     const auto add_form = [&](const VolumeForm& form, Beside beside) {
       specs.push_back(volume_spec(form, beside, limit, source.channels(), traits));
     };
-    // of many nodes the first is taken untried
+    // Specs with many nodes are not tried: the first is taken.
     const int spare =
         limit.bytes / limit.texel_bytes < kMinGridTexels ? 0 : limit.fetches - 1 - traits.ordered;
     if (traits.twisted && spare >= 1) add_form(kVolumeForms[0], Beside::grid);
     for (const VolumeForm& form : kVolumeForms) add_form(form, Beside::line);
     if (!traits.twisted && spare >= 2) add_form(kVolumeForms[0], Beside::grid);
   };
-  // beside what matters more, the table may not be worth its bytes
+  // The table of the order may not be worth its bytes, so there are models without it too.
   if (limit.fetches > 1 && traits.ordered) add();
   traits.ordered = false;
   add();

@@ -15,12 +15,13 @@ namespace burnish {
 namespace {
 
 constexpr double kFirstSmooth = 1e-7, kMinSmooth = 1e-9, kMaxVolumeSmooth = 1e-4, kStep = 10;
-// Half of the nodes have twice the area each; integrals of squared second derivatives grow with its square.
+// Each of half of the nodes has twice the area; integrals of squared second derivatives grow with the square of the
+// area.
 constexpr double kGap = 4;
-// What of a model's shares counts nodes, all of it here.
+// The terms of a model's shares that count nodes; here no other terms are used.
 constexpr ErrorTerms kShares{.pictures = 0, .dimmed = 0, .relative = 2, .log_cos = 2};
 constexpr std::size_t kMaxNodes = 40'000;
-constexpr double kFullCosine = 0.15;  // from here on nodes count fully, as those of KrigedNodes do
+constexpr double kFullCosine = 0.15;  // from here on nodes count fully, as in KrigedNodes
 
 MeasuredNodes part_of_many(const MeasuredNodes& nodes) {
   const auto step = static_cast<std::uint32_t>(nodes.size() / kMaxNodes + 1);
@@ -40,7 +41,7 @@ Trial trial_of(const MeasuredNodes& nodes, std::uint32_t half, bool symmetrize) 
   const MeasuredNodes fitted = nodes_of(nodes, {.kind = NodePart::Kind::half, .number = half});
   Trial trial{.seen = training_set_of(fitted.samples, symmetrize),
               .unseen = nodes_without(nodes, {.kind = NodePart::Kind::half, .number = half})};
-  // each node once, or once for either order
+  // Each node counts once, or once for either order of the directions.
   for (std::size_t i = 0; i < trial.seen.size(); ++i) {
     const DirectionPair& pair = trial.seen.pairs[i];
     trial.seen.weights[i] = static_cast<float>(fitted.weights[i % fitted.size()] *
@@ -66,7 +67,7 @@ double choose_volume_smoothness(const MeasuredNodes& nodes, const ModelSpec& spe
     return errors[0] + errors[1];
   };
 
-  // up or down as long as that helps
+  // The smoothness goes up or down as long as that helps.
   double best = kFirstSmooth, smallest = error_of(best);
   for (const double factor : {kStep, 1 / kStep}) {
     const double from = best;
@@ -77,7 +78,7 @@ double choose_volume_smoothness(const MeasuredNodes& nodes, const ModelSpec& spe
       smallest = error;
       best = smooth;
     }
-    if (best != from) break;  // the other way would undo it
+    if (best != from) break;  // the other direction would undo it
   }
   return best / kGap;
 }

@@ -22,7 +22,7 @@ TEST(VolumeSmoothness, TakesNoiseAway) {
   const double chosen = choose_volume_smoothness(measured_nodes(samples), small_volume(), true);
   EXPECT_EQ(choose_volume_smoothness(measured_nodes(samples), small_volume(), true), chosen);
 
-  // beside what was measured, without its noise
+  // The error is that against the truth, without the measurement's noise.
   const TrainingSet set = training_set_of(samples, true);
   const auto error = [&](double smooth) {
     const LobesFit fit =
