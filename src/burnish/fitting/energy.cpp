@@ -168,9 +168,9 @@ class Damper {
                                  [&](const FactorUse& use) { return !gains_[use.table].empty(); });
   }
 
-  // Returns the changes of a table's nodes that changes of the grid ask for. Each node takes the least of those that
-  // its interpolation reaches, damping by its share in them. So no direction stays above 1 because its nodes look
-  // elsewhere.
+  // Returns the changes of a table's nodes for the changes of the grid. Each node takes the least change of the
+  // directions that it contributes to; a damping change is raised to the power of its share. So no direction stays
+  // above 1 because its nodes follow other directions.
   std::vector<double> node_changes(const Table& table, const std::vector<double>& change) const {
     const auto step = table.channels;
     std::vector<double> result(table.values.size(), std::numeric_limits<double>::infinity());
@@ -248,7 +248,8 @@ EnergyConservation conserve_energy(const FactoredBrdf& brdf, const EnergyOptions
   limit_scales(lobes, largest_rest, [&](const Lobe& lobe) { return !damper.damps(lobe); });
   for (std::size_t i = 0; i < rest.size(); ++i) rest[i] /= std::max(largest_rest[i % channels], 1.0);
 
-  // The gains of the others are iterated. As gains are at most 1, an albedo that is at most 1 without them stays so.
+  // The gains of the other lobes are iterated. Gains are at most 1, so an albedo that is at most 1 without them stays
+  // so.
   const std::vector<bool> above = directions_above_one(albedo, channels);
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     update_albedos(damper.apply(lobes), grid, options.tolerance, above, albedo);

@@ -19,9 +19,9 @@ namespace {
 // Few directions: sanitized builds are slow.
 constexpr EnergyOptions kCoarse{.theta_count = 10, .phi_count = 12};
 
-/// A model whose tables over wi and wo rise towards the horizon by e^rise, most of it near grazing, whose
-/// others fall by e^-fall, with some noise; its albedo at the normal is `level` in the first channel, less in
-/// the others.
+/// A model whose tables over wi and wo rise towards the horizon by e^rise, most of it near grazing. Its other tables
+/// fall by e^-fall, with some noise. Its albedo at the normal is `level` in the first channel, and less in the other
+/// channels.
 FactoredBrdf steep_model(const char* expression, std::vector<std::string> options, TableFormat format,
                          double rise, double level, double fall = 3) {
   constexpr std::size_t channels = 3;
@@ -111,7 +111,7 @@ TEST(EnergyCost, DampedDirectionsReflectAllAndOthersKeepTheirs) {
       steep_model("pqp", {"p=48", "q=32,rational:0.1"}, TableFormat::single, 5, 0.5, 40);
   const EnergyConservation kept = conserve_energy(brdf, {});
   ASSERT_GT(kept.largest_before[0], 1.5);
-  // nearer than 75 degrees nothing exceeds 1, and up to 60 little light goes where something does
+  // Albedos nearer than 75 degrees do not exceed 1. Up to 60 degrees, little light goes to directions that do.
   for (const double theta_deg : {0.0, 15.0, 30.0, 45.0, 60.0, 80.0, 85.0}) {
     const Vec3 wi = spherical_direction(radians(theta_deg), 0);
     const double before = directional_albedo(brdf, wi).albedo[0];

@@ -23,7 +23,7 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kBaselineSamples = 200'000, kBookSamples = 1000;  // drawn of a function
+constexpr std::size_t kBaselineSamples = 200'000, kBookSamples = 1000;  // drawn from a function
 // Fewer samples of an anisotropic source than this make one lobe.
 constexpr std::size_t kFewAnisotropic = 1000;
 
@@ -97,7 +97,7 @@ struct FormFitter {
   }
 };
 
-/// Takes out of the model what it reflects too much, and reports what that cost.
+/// Scales the model where it reflects too much, and reports the change of its errors.
 EnergyReport conserve(const FittedSource& source, FactoredBrdf& brdf) {
   EnergyConservation kept = conserve_energy(brdf);
   const Scorer scorer(source.reference(), source.held_out());
@@ -110,7 +110,7 @@ EnergyReport conserve(const FittedSource& source, FactoredBrdf& brdf) {
   return report;
 }
 
-/// How far the model as stored is from the nodes that are the target.
+/// Reports the errors of the stored model at the nodes that are the target.
 void score_nodes(const FittedSource& source, const FitOptions& options, const Fit& fit, NodesReport& report) {
   const BrdfRef brdf = std::visit([](const auto& any) { return ref_of(any); }, fit.brdf);
   report.at_fitted = node_figures(*source.nodes(), brdf);
@@ -120,7 +120,7 @@ void score_nodes(const FittedSource& source, const FitOptions& options, const Fi
     report.expected = expected_error(*source.between(), brdf);
 }
 
-/// Scores the model as stored, on pairs that were not fitted.
+/// Scores the stored model on pairs that were not fitted.
 void score(const FittedSource& source, const FitOptions& options, Fit& fit) {
   if (fit.report.nodes) score_nodes(source, options, fit, *fit.report.nodes);
   if (const auto* baseline = std::get_if<BaselineBrdf>(&fit.brdf)) {
@@ -156,9 +156,9 @@ FitTarget default_target(const Source& source, const FitOptions& options) {
   const bool given = options.form && std::holds_alternative<GivenLobes>(*options.form);
   const bool chosen = (!options.form || budget || usual) && !one_lobe.cross_validate;
 
-  // Scattered samples say more than a function made of them, but for peaks about wi = wo, which a lobe of their own
-  // holds, and for few anisotropic ones, which leave the tables of several lobes undetermined. Options of one lobe ask
-  // for one.
+  // A fit to scattered samples is better than one to a function made of them. There are two exceptions. Peaks about
+  // wi = wo need a lobe of their own, and few anisotropic samples leave the tables of several lobes undetermined.
+  // Options for one lobe also ask for a fit of one lobe to the function.
   const auto takes_samples = [&](const Samples& samples) {
     return (samples.isotropic || samples.size() >= kFewAnisotropic) && chosen && !one_lobe.reweightings &&
            one_lobe.floor == LogLinear{}.floor && !backscatters(from_samples(samples, false));
@@ -201,7 +201,7 @@ std::size_t Fit::bytes() const noexcept {
 
 Fit fit(const Source& source, const FitOptions& asked) {
   FitOptions options = asked;
-  // Light that goes the other way through a surface comes from its other side, which is another part.
+  // Light that goes the other way through a surface comes from its other side, which is another source.
   options.symmetrize = asked.symmetrize && !source.findings.transmits();
   const Stages stages(options);
   const FittedSource fitted(source, options, stages);

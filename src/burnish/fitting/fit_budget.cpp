@@ -18,7 +18,7 @@ namespace burnish {
 
 namespace {
 
-// Of DefaultBudget.
+// The fetches of DefaultBudget.
 constexpr int kIsotropicFetches = 2, kAnisotropicFetches = 6;
 
 void check(const Budget& budget) {
@@ -39,10 +39,10 @@ FittedModel model_of(FittedLobes fitted) {
   return {.brdf = std::move(fitted.brdf), .how = std::move(fitted.report)};
 }
 
-/// Fits models of numbers of bytes.
+/// Fits models within a number of bytes.
 class BudgetFitter {
  public:
-  /// `usual`: nobody gave a number of fetches; they are those of DefaultBudget.
+  /// `usual`: no option gave a number of fetches, so they are those of DefaultBudget.
   BudgetFitter(const FittedSource& source, const FitOptions& options, const Budget& budget, bool usual,
                const Stages& stages)
       : source_(source), options_(options), budget_(budget), usual_(usual), stages_(stages) {
@@ -53,7 +53,7 @@ class BudgetFitter {
 
  private:
   FittedModel fit_to(std::uint64_t bytes, const Stages& stages) const {
-    // Few scattered samples do not carry several lobes.
+    // Few scattered samples do not determine several lobes.
     if (source_.scattered()) return fit_samples_to(bytes, stages);
     const WithinBytes within(source_, options_, budget_, bytes, stages);
     if (!budget_.fetches) {
@@ -69,13 +69,14 @@ class BudgetFitter {
                                   usual_ ? std::nullopt : budget_.fetches, stages));
   }
 
-  /// Whether the number of fetches is left to choose. Where the order of the directions matters lobes share a table of
-  /// wi and hold it better than the models of any trial.
+  /// True if the library chooses the number of fetches. If the order of the directions matters, it does not: lobes
+  /// share a table of wi and then fit better than the models of the trials.
   bool takes_knee() const {
     return !budget_.fetches && !budget_.lobes && !budget_.search && !order_matters(source_.reference());
   }
 
-  /// More and more bytes, until the model errs no more than the measurement itself or they hardly help.
+  /// Tries more and more bytes, until the model's error is no larger than the measurement's, or more bytes hardly
+  /// help.
   FittedModel fit_to_noise() const {
     if (source_.scattered() && source_.samples()->size() <= kManySamples) {
       FittedModel model = fit_samples_to(kBudgetLadder.back(), stages_);
@@ -101,7 +102,7 @@ class BudgetFitter {
       choice.stop = *stop;
       break;
     }
-    if (!best) return fit_to(kBudgetLadder.back(), stages_);  // which says how many bytes it takes
+    if (!best) return fit_to(kBudgetLadder.back(), stages_);  // its error names the least bytes
     best->budget_choice = std::move(choice);
     return *std::move(best);
   }

@@ -18,7 +18,7 @@ namespace {
 
 // Scattered samples are few and noisy: they are fitted robustly, with the smoothness that predicts best.
 constexpr int kScatteredReweightings = 4;
-// Of samples that weigh differently, whose conjugate gradients take longer.
+// The tolerance for samples of different weights, whose conjugate gradients take longer.
 constexpr double kBackscatterTolerance = 2e-4;
 constexpr double kExpectedWeight = 0.01;  // of a sample of between_incidences
 constexpr std::size_t kExpectedFolds = 5;
@@ -51,7 +51,7 @@ FittedLobe finish_one(const FittedSource& source, const SampleSource& measured, 
   return {.brdf = std::move(result.brdf), .report = std::move(report)};
 }
 
-/// What a first fit leads to expect between incidences; nothing of sources that do not backscatter.
+/// Returns values between incidences that a first fit predicts; none for sources that do not backscatter.
 Samples expected_of(const SampleSource& source, const ModelSpec& spec, const HomomorphicOptions& options) {
   if (options.backscatter <= 0 || !source.isotropic) return {};
   return between_incidences(source, fit_homomorphic(source, spec, options).brdf);
@@ -82,7 +82,7 @@ FittedLobe fit_one(const FittedSource& source, const FitOptions& options, ModelS
 
 FittedLobe fit_scattered(const FittedSource& source, const FitOptions& options, const LogLinear& how,
                          std::uint64_t bytes, std::optional<int> fetches, const Stages& stages) {
-  // The lobe is reciprocal: samples exchanged would say the same again.
+  // The lobe is reciprocal, so exchanged samples would add no information.
   const SampleSource samples = from_samples(*source.samples(), false);
   if (options.format) source.check_format(*options.format);
   HomomorphicOptions log_linear = log_linear_options(source, how, stages);
@@ -97,12 +97,12 @@ FittedLobe fit_scattered(const FittedSource& source, const FitOptions& options, 
   OneLobeReport report;
   if (plan.error && !options.smooth) report.relative_cross_validated = std::expm1(*plan.error);
 
-  // What a first fit expects between incidences joins the samples with little weight.
+  // The values that a first fit predicts between incidences are added to the samples with little weight.
   const Samples expected = expected_of(samples, plan.spec, log_linear);
   if (expected.size() == 0)
     return finish_one(source, samples, samples, plan.spec, log_linear, std::move(report));
   const SampleSource both = with_expected(samples, expected, kExpectedWeight);
-  if (report.relative_cross_validated)  // of so little weight others count for nothing in it
+  if (report.relative_cross_validated)  // samples of so little weight do not affect it
     report.relative_cross_validated = std::expm1(held_out_error(both, plan.spec, log_linear, kExpectedFolds));
   return finish_one(source, samples, both, plan.spec, log_linear, std::move(report));
 }

@@ -161,7 +161,7 @@ std::string camel_case(std::string_view name) {
   return text;
 }
 
-// An option that was given, as a message about several options names it.
+// The spelling of an option that was given, in a message about several options.
 std::string given(const FitOption& option, FitFront front) {
   const bool turned_off =
       option.takes == FitValue::flag && default_of_flag(option) && front != FitFront::command_line;
@@ -174,7 +174,7 @@ std::string found_text(const Json& value) {
   return value.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, kLongest);
 }
 
-// Returns what an option takes, as text after "expected".
+// Returns the kind of value that an option takes, as text after "expected".
 std::string expected_value(const FitOption& option) {
   switch (option.takes) {
     case FitValue::flag:
@@ -243,7 +243,7 @@ std::optional<std::uint64_t> bytes_of_text(std::string_view text) {
   return result;
 }
 
-// The value in the form in which a request keeps it; none where the option does not take it.
+// Returns the value in the form in which a request keeps it; none if the option does not take it.
 std::optional<Json> kept_bytes(const FitOption& option, const Json& value) {
   if (value == kAuto) return value;
   std::optional<std::uint64_t> bytes;
@@ -328,7 +328,7 @@ void check_together(const Json& values, FitFront front) {
     throw wrong("target", "nodes", "hold_out");
 }
 
-// A word as JSON: numbers where they can be read, else the text, which is refused later.
+// Converts a word to JSON: a number if it can be read as one, else the text, which is refused later.
 Json json_of_word(const FitOption& option, const std::string& text) {
   if (option.takes == FitValue::flag) return !default_of_flag(option);
   if (option.takes != FitValue::whole && option.takes != FitValue::number &&
@@ -354,7 +354,7 @@ LogLinear log_linear_of(const Json& values) {
 
 FitForm form_asked_for(const FitRequest& request, bool isotropic) {
   const Json& values = request.values;
-  std::optional<std::uint64_t> bytes;  // none for auto too
+  std::optional<std::uint64_t> bytes;  // none for auto, too
   if (values.contains("budget") && values["budget"].is_number())
     bytes = values["budget"].get<std::uint64_t>();
   if (values.contains("book")) return FromBook{request.book};

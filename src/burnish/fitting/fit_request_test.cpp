@@ -20,14 +20,14 @@ using Json = nlohmann::ordered_json;
 using Words = std::vector<std::pair<std::string, std::string>>;
 using ::testing::HasSubstr;
 
-/// One question in two forms, and what is said of it.
+/// One wrong request in two forms, and the error that it gets.
 struct Wrong {
   Words words;
   const char* json;
   const char* said;
 };
 
-// Most were once taken silently by one of the command line, Python and the page.
+// Most of these requests were once accepted silently by the command line, Python or the page.
 const std::vector<Wrong>& wrong_requests() {
   static const std::vector<Wrong> all{
       {{{"model", "pqp"}, {"budget", "2700"}},
@@ -87,7 +87,7 @@ const std::vector<Wrong>& wrong_requests() {
       {{{"target", "function"}, {"hold_out", "half=1"}},
        R"({"target": "function", "hold_out": "half=1"})",
        "target: expected nodes with hold_out, found 'function'"},
-      // values
+      // These have wrong values.
       {{{"budget", "much"}},
        R"({"budget": "much"})",
        "budget: expected auto or a number of bytes from 1 to 67108864, as 2700, 16K or 1M, found 'much'"},
@@ -297,11 +297,11 @@ TEST(FitOptionTable, HoldsTogether) {
     if (!option.needs.empty()) {
       EXPECT_FALSE(excludes(option, fit_option(option.needs))) << name;
     }
-    // the example is taken, beside what it needs
+    // The example is accepted, together with the option that it needs.
     Words given{{name, std::string(option.example)}};
     if (!option.needs.empty()) given.emplace_back(option.needs, fit_option(option.needs).example);
     EXPECT_EQ(request_of_words(given).values.contains(name), true) << name;
-    // and so is the default
+    // The default is accepted too.
     if (!option.standard.empty() && option.takes != FitValue::flag) {
       EXPECT_EQ(error_of_words({{name, std::string(option.standard)}}, FitFront::python), "") << name;
     }

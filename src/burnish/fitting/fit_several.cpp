@@ -9,11 +9,11 @@ namespace burnish {
 
 namespace {
 
-// Steps that look at albedos, and their share in the loss.
+// The numbers of steps that count albedos, and the share of albedos in the loss.
 constexpr int kAlbedoSteps = 20, kLongAlbedoSteps = 6;
 constexpr double kAlbedoShare = 0.3;
 
-/// Last steps that look at albedos too. Before, they would lead lobes that are not found yet astray.
+/// Runs last steps that count albedos too. Earlier, albedos would mislead lobes that are not fitted yet.
 void reflect_as_much(const FittedSource& source, LogModel& model, TrainingSet& set, RefineOptions& refine,
                      const Stages& stages) {
   add_albedos(source, set, refine);

@@ -67,7 +67,7 @@ PatchTable patch_table() {
   return table;
 }
 
-// exp(0.3) - 1 everywhere: the outputs' biases are the last weights.
+// A network with the value exp(0.3) - 1 everywhere: the biases of the outputs are the last weights.
 NeuralBrdf neural() {
   std::vector<float> weights(NeuralBrdf::kWeights);
   std::fill(weights.end() - NeuralBrdf::kOutputs, weights.end(), 0.3f);
@@ -100,7 +100,7 @@ std::vector<Source> every_source() {
   return sources;
 }
 
-// One lobe of small tables, fitted in no time.
+// Options for one lobe of small tables, which is fitted quickly.
 FitOptions small_lobe(const Source& source) {
   const bool isotropic = source.ref().isotropic();
   return {.form = OneLobe{.tables = isotropic ? std::vector<std::string>{"p=8", "q=12"}
@@ -108,7 +108,7 @@ FitOptions small_lobe(const Source& source) {
           .samples = 4000};
 }
 
-// Every form, for an isotropic source of three channels.
+// Options for every form, for an isotropic source of three channels.
 std::map<std::string, FitOptions> every_form() {
   std::map<std::string, FitOptions> forms{
       {"one lobe", {.form = OneLobe{.tables = {"p=8", "q=12"}}, .samples = 4000}},
@@ -137,13 +137,13 @@ TEST(Fit, MakesAModelOfEverySource) {
     EXPECT_TRUE(made.model().reciprocal()) << source.name;
     EXPECT_EQ(made.report.source, source.name);
     EXPECT_EQ(made.report.source_format, source.findings.format);
-    // scattered samples have no function to be held against
+    // Scattered samples have no function to compare with.
     EXPECT_EQ(made.report.held_out.has_value(), source.samples() == nullptr) << source.name;
     EXPECT_EQ(std::get<OneLobeReport>(made.report.how).relative.has_value(), source.samples() != nullptr);
   }
 }
 
-// What holds of a fit of every form, which the name of it is told beside.
+// Checks the properties of fits of every form; failures print the form's name.
 
 void expect_near_source(const Source& source, const FitForm& form, const Fit& made, const std::string& name) {
   EXPECT_LT(mean_error(source.ref(), made.ref()), 1) << name;
@@ -191,7 +191,7 @@ void expect_report_in_file(const Fit& made, const std::string& name) {
   EXPECT_EQ(nlohmann::json::parse(summary_json(made, "out", 1.5, 321)).at("file_bytes"), 321) << name;
 }
 
-// The fit of two threads, whose stages only go on.
+// Fits with two threads, and checks that the progress of each stage never falls.
 Fit fit_with_stages(const Source& source, FitOptions options, const std::string& name) {
   std::map<std::string, double, std::less<>> stages;
   options.progress = [&](std::string_view stage, double fraction) {
@@ -202,12 +202,12 @@ Fit fit_with_stages(const Source& source, FitOptions options, const std::string&
   };
   const ThreadLimit two(2);
   Fit made = fit(source, options);
-  // one lobe of few unknowns is solved at once
+  // One lobe of few unknowns is solved directly and reports no stages.
   EXPECT_TRUE(std::holds_alternative<OneLobe>(*options.form) || !stages.empty()) << name;
   return made;
 }
 
-// One fit of each form serves all that holds of it: fits are what takes time.
+// One fit of each form serves all checks, since fits take most of the time.
 TEST(Fit, MakesEveryFormAndSaysWhatItMade) {
   const Source source = source_of("paint", paint());
   for (const auto& [name, options] : every_form()) {
@@ -338,10 +338,10 @@ TEST(Fit, ToNodesPredictsThoseHeldOut) {
   ASSERT_TRUE(made.report.nodes);
   const NodesReport& report = *made.report.nodes;
   EXPECT_EQ(report.fitted, nodes_of(measured_nodes(source), parse_node_part("half=0")).size());
-  // of noise alone the mean |error| is kNoise sqrt(2 / pi)
+  // For noise alone the mean |error| is kNoise sqrt(2 / pi).
   EXPECT_LT(std::log1p(report.at_held_out.value().relative), 1.2 * kNoise * std::sqrt(2 / kPi));
   EXPECT_GT(report.at_held_out->relative, report.at_fitted.relative);
-  // the source itself is far better than one of its samples
+  // The fit is far closer to the truth than one of the samples is.
   EXPECT_LT(mean_error(truth, made.ref()), 0.5 * report.at_held_out->relative);
   EXPECT_LE(made.bytes(), 1000u);
   EXPECT_NE(to_json(made.report).find("node_test"), std::string::npos);
@@ -373,7 +373,7 @@ TEST(Fit, OfIsotropicRglFilesIsOfTheirNodesUnlessAskedOtherwise) {
   EXPECT_EQ(default_target(merl, {}), FitTarget::function);
   EXPECT_EQ(default_target(merl, {.hold_out = NodePart{}}), FitTarget::nodes);
 
-  BURNISH_SKIP_WHERE_SANITIZED();  // of what follows
+  BURNISH_SKIP_WHERE_SANITIZED();  // the rest is slow
   const FitOptions small{.form = Budget{.bytes = 1000}, .score = false};
   FitOptions of_function = small;
   of_function.target = FitTarget::function;
@@ -387,7 +387,7 @@ TEST(Fit, OfIsotropicRglFilesIsOfTheirNodesUnlessAskedOtherwise) {
 TEST(Fit, TakesAThirdFetchWhereTwoLeaveNodesFartherThanWhatIsForetold) {
   BURNISH_SKIP_WHERE_SANITIZED();
   BURNISH_NEEDS_DATA();
-  // two hold a felt, not a film whose red goes dark
+  // Two fetches suffice for a felt, but not for a film whose red goes dark.
   for (const auto& [name, enough] : {std::pair{"acrylic_felt_green_rgb", true}, {"chm_mint_rgb", false}}) {
     const Source source = open_source((data_folder() / "rgl" / name).string() + ".bsdf", {});
     const Fit two = fit(source, {.form = Budget{.bytes = 16'384, .fetches = 2}}), made = fit(source, {});
@@ -425,7 +425,7 @@ TEST(Fit, ReflectsWhatTheRawValuesOfANoisySourceDo) {
   }
 }
 
-// Relative errors of all channels alike, those of exchanged directions apart.
+// Relative errors are alike in all channels, and independent for exchanged directions.
 Source noisy_source(double noise) {
   AngleTable table = tabulate_angles(paint(), angle_table());
   Pcg32 random(3);
@@ -449,14 +449,14 @@ TEST(Fit, ChoosesTheSmoothnessOfVolumesByNodesWhereAsked) {
     return std::get<LobesReport>(made.report.how).smooth;
   };
   EXPECT_FALSE(smooth_of(table, false));
-  EXPECT_FALSE(smooth_of(formula, true));  // was measured nowhere
-  // few nodes predict one another best by a function that is smooth between them
+  EXPECT_FALSE(smooth_of(formula, true));  // a formula was not measured
+  // Few nodes predict one another best with a function that is smooth between them.
   EXPECT_GT(smooth_of(table, true).value_or(0), 1e-8);
 }
 
 TEST(Fit, StoresNoNoiseWhereBytesAreAuto) {
   BURNISH_SKIP_WHERE_SANITIZED();
-  // the more noise, the fewer bytes
+  // A noisier source needs fewer bytes.
   std::uint64_t before = 1 << 20;
   for (const double noise : {0.05, 0.4}) {
     const Fit made = fit(noisy_source(noise), {.form = Budget{.bytes = {}}});
@@ -482,7 +482,7 @@ TEST(Fit, StopsOfASourceWithoutNoiseWhereLittleIsOff) {
   EXPECT_FALSE(choice.noise);
   EXPECT_LE(choice.trials.back().error.relative, 0.005);
   EXPECT_LE(fetch_count(made.model()), 2u);
-  // what is returned is the fit to the bytes that were chosen
+  // The result is the same as a fit to the chosen bytes.
   const Fit named = fit(source, {.form = Budget{.bytes = choice.bytes, .fetches = 2}, .score = false});
   EXPECT_EQ(made.model(), named.model());
 }
@@ -494,7 +494,8 @@ TEST(Fit, ChoosesBytesOfScatteredSamplesByCrossValidation) {
   EXPECT_EQ(made.report.budget_choice->bytes, made.bytes());
 }
 
-// The compact file takes at most 256 bytes and 5 % above the tables; it and the native file give each other's bytes.
+// The compact file is at most 256 bytes and 5 % larger than the tables. It and the native file convert to each
+// other's bytes.
 void expect_small_twins(const Fit& made, const std::string& what) {
   const std::string native = format_fit(made);
   const Model model = parse_model(memory_file(native));
@@ -520,14 +521,14 @@ TEST(Fit, MakesFilesLittleLargerThanTheirTables) {
   for (const std::optional<int> fetches : {std::optional(1), std::optional(2), std::optional<int>()})
     expect_small(paint(), 1350, fetches);
   expect_small(brushed(), 1350, 4);
-  // with volumes
+  // These models have volumes.
   expect_small(paint(), 16 << 10, 2);
   expect_small(paint(), 64 << 10, 2);
   expect_small(paint(), 16 << 10, 4);
 }
 
-// Hemispheres times a volume, whose file is little larger than its tables too. More bytes take longer and are
-// better still.
+// The model is hemispheres times a volume, and its file is little larger than its tables. More bytes would take
+// longer and fit better.
 TEST(Fit, HoldsAnAnisotropicHighlightAndWhatIsDiffuse) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const Source source = source_of("ggx", parse_analytic("ggx:alpha_x=0.1,alpha_y=0.3,f0=0.8,kd=0.3"));
@@ -567,7 +568,7 @@ TEST(Fit, TakesTheKneeOfAnAnisotropicSourceToo) {
   const auto& report = std::get<LobesReport>(made.report.how);
   ASSERT_GT(report.fetch_trials.size(), 1u);
   EXPECT_EQ(fetch_count(made.model()), static_cast<std::size_t>(trial_at_knee(report.fetch_trials).fetches));
-  EXPECT_LE(fetch_count(made.model()), 3u);  // of the half vector alone
+  EXPECT_LE(fetch_count(made.model()), 3u);  // tables of the half vector alone
   EXPECT_LE(made.bytes(), 2500u);
 }
 
@@ -577,18 +578,18 @@ TEST(Fit, RefusesWhatDoesNotGoTogether) {
   const auto told = [](const Source& source, const FitOptions& options) {
     return error_of([&] { fit(source, options); });
   };
-  // models that are none, or not of that form
+  // These models are invalid, or not of that form.
   EXPECT_THAT(told(even, {.form = OneLobe{.model = "p(wo) q(h) p(wi) + s(h)"}}),
               HasSubstr("one lobe, found 2"));
   EXPECT_NE(told(even, {.form = OneLobe{.model = "p(up)"}}), "");
   EXPECT_NE(told(even, {.form = OneLobe{.tables = {"z=8"}}}), "");
   EXPECT_NE(told(even, {.form = OneLobe{.model = "w(theta_t)", .tables = {"w=8x8"}}}), "");
   EXPECT_NE(told(even, {.form = GivenLobes{.model = ""}}), "");
-  // nodes of what was not measured, or held out of a function
+  // Sources that were not measured have no nodes, and a function has none to hold out.
   EXPECT_THAT(told(even, {.target = FitTarget::nodes}), HasSubstr("expected a measurement"));
   EXPECT_THAT(told(even, {.target = FitTarget::function, .hold_out = NodePart{}}),
               HasSubstr("expected the nodes"));
-  // budgets that hold nothing
+  // These budgets hold no model.
   EXPECT_THAT(told(even, {.form = Budget{.bytes = 0}}), HasSubstr("budget"));
   EXPECT_THAT(told(even, {.form = Budget{.bytes = 20}}), HasSubstr("budget"));
   EXPECT_THAT(told(uneven, {.form = Budget{.lobes = 1}}), HasSubstr("two lobes"));
@@ -598,13 +599,13 @@ TEST(Fit, RefusesWhatDoesNotGoTogether) {
   EXPECT_THAT(told(even, {.form = Budget{.fetches = 2, .search = true}}), HasSubstr("nor a search"));
   EXPECT_THAT(told(even, {.form = BaselineMethod{"svd", 0}}), HasSubstr("at least one byte"));
   EXPECT_THAT(told(even, {.samples = 0}), HasSubstr("at least one sample"));
-  // formats that do not hold the channels
+  // These formats do not hold the channels.
   EXPECT_THAT(told(grey, {.form = Budget{}, .format = TableFormat::rgb9e5}), HasSubstr("3 channels"));
   EXPECT_NE(told(grey, {.form = OneLobe{.tables = {"p=6x6", "q=8x8"}}, .format = TableFormat::rgb9e5}), "");
-  // numbers out of their range
+  // These numbers are out of range.
   EXPECT_NE(told(even, {.form = OneLobe{}, .smooth = -1, .samples = 100}), "");
   EXPECT_NE(told(even, {.form = OneLobe{.how = {.floor = 0}}, .samples = 100}), "");
-  // baselines
+  // These are wrong options of baselines.
   EXPECT_THAT(told(even, {.form = BaselineMethod{"pca"}}), HasSubstr("expected one of svd"));
   EXPECT_THAT(told(uneven, {.form = BaselineMethod{"dgf"}, .samples = 100}), HasSubstr("isotropic"));
   EXPECT_THAT(told(even, {.form = BaselineMethod{"svd"}, .smooth = 1e-3}), HasSubstr("method svd"));

@@ -20,21 +20,20 @@ namespace burnish {
 
 namespace {
 
-// Volumes and hemispheres follow all angles alike; what they lack shows in pictures first. With p(wo) p(wi) beside
-// them, of four fetches, there is some to spare, for absolute errors too: these lie near grazing, and p alone is as
-// steep there.
+// Volumes and hemispheres fit all angles equally well; their errors appear first in pictures. With p(wo) p(wi), from
+// four fetches on, they can also reduce absolute errors. These errors lie near grazing, and only p is as steep there.
 constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 2, .log_cos = 0.6};
 constexpr int kSpareFetches = 4;
 constexpr double kSpareLogCos = 0.8, kSpareAbsolute = 0.1;
-constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors and smoothness
+constexpr std::size_t kSpareTexels = 1500;  // from here on absolute errors and the usual smoothness
 constexpr double kVolumeSmooth = 1e-9;
 constexpr double kFewTexelsSmooth = 1e-9;   // of several lobes; few texels are smooth by themselves
-constexpr double kHemisphereSmooth = 1e-6;  // whose many texels few pixels reach
-constexpr double kFarther = 1.1;            // from nodes than nodes are predicted: a fetch more is tried
-constexpr int kMoreFetchesOfNodes = 1;      // dark films' colours ask for a grid beside the line
-constexpr int kSmoothnessFetches = 2;       // of the models by which it is chosen
+constexpr double kHemisphereSmooth = 1e-6;  // few pixels reach each of its many texels
+constexpr double kFarther = 1.1;            // if nodes are farther off than predicted ones
+constexpr int kMoreFetchesOfNodes = 1;      // for a grid beside the line, which colours of dark films need
+constexpr int kSmoothnessFetches = 2;       // of the models that choose it
 
-// What was measured is judged where it was measured; pictures keep the rest from running away.
+// Measurements are judged at their nodes; the share of pictures limits errors elsewhere.
 constexpr ErrorTerms kNodeShares{.pictures = 0.5, .dimmed = 0.1, .relative = 1, .log_cos = 1};
 
 SearchReport report_of(const SearchResult& found) {
@@ -58,7 +57,7 @@ CostLimit WithinBytes::limit_of(std::size_t bytes, int fetches) const {
   return {.bytes = bytes, .texel_bytes = texel(), .fetches = fetches};
 }
 
-// ---- What the bytes hold
+// ---- Capacity of the bytes
 
 bool WithinBytes::holds(std::size_t bytes) const {
   if (budget_.fetches) return holds_model(source_.reference(), limit_of(bytes, *budget_.fetches));
@@ -70,7 +69,7 @@ void WithinBytes::check() const {
   if (holds()) return;
   std::size_t most = bytes_;
   while (!holds(most)) most *= 2;
-  std::size_t least = most / 2;  // between what does not fit and what does
+  std::size_t least = most / 2;  // the smallest capacity is between these
   while (most - least > 1) (holds((least + most) / 2) ? most : least) = (least + most) / 2;
   throw Error(
       fmt::format("fit: expected a budget of at least {} bytes for {} channels in format {}, found {}", most,
@@ -79,7 +78,7 @@ void WithinBytes::check() const {
 
 // ---- Several lobes
 
-/// How smooth lobes are: as asked for, or as serves them.
+/// Returns the smoothness of lobes: the given one, or one that suits the plan.
 double WithinBytes::smooth_of(const LobePlan& plan) const {
   const bool few = plan.lobes > 1 && plan.wide.empty() && bytes_ < kSpareTexels * texel();
   return options_.smooth.value_or(few ? kFewTexelsSmooth : RefineOptions().smooth);
@@ -100,7 +99,7 @@ WithinBytes::ChosenLobes WithinBytes::choose_lobes() const {
   return lobes;
 }
 
-/// Takes the plan that a search finds.
+/// Replaces the plan by the result of a search.
 SearchReport WithinBytes::search(ChosenLobes& lobes) const {
   const SearchResult found = search_plan(lobes.set, lobes.plan,
                                          {.bytes = static_cast<std::size_t>(bytes_),
@@ -115,7 +114,7 @@ FittedLobes WithinBytes::fit_lobes(ChosenLobes lobes) const {
   LobesReport report{.loss = budget_.loss, .budget = bytes_};
   if (budget_.search) report.search = search(lobes);
 
-  // Tables are as smooth as asked for or as needed.
+  // The smoothness of tables is the given one, or the one that avoids overfitting.
   const auto& [drawn, set, refine, plan] = lobes;
   if (options_.smooth)
     return finish(source_, fit_plan(set, plan, bytes_, texel(), refine, kLobeStarts), set, refine,
@@ -150,7 +149,7 @@ FittedLobes WithinBytes::fit_volumes_within(const CostLimit& limit) const {
   LobesReport report{.loss = budget_.loss, .budget = bytes_, .fetches = limit.fetches};
   RefineOptions refine = refine_options(source_, options_, budget_.loss, stages_);
 
-  // What the errors weigh depends on what there is to spare.
+  // The weights of the errors depend on fetches and bytes.
   if (budget_.loss == FitLoss::image) {
     refine.shares = kVolumeShares;
     if (limit.fetches >= kSpareFetches) {
@@ -160,7 +159,7 @@ FittedLobes WithinBytes::fit_volumes_within(const CostLimit& limit) const {
     if (source_.judged_at_nodes()) refine.shares = kNodeShares;
   }
 
-  // The smoothness is given, usual, or the one that predicts nodes best.
+  // The smoothness is the given one, the usual one, or the one that predicts nodes best.
   if (!options_.smooth) {
     refine.smooth = kVolumeSmooth;
     if (budget_.scattered.cross_validate && !source_.nodes() && is_measurement(source_.source()))
@@ -171,7 +170,7 @@ FittedLobes WithinBytes::fit_volumes_within(const CostLimit& limit) const {
                 std::move(report), stages_);
 }
 
-/// That which predicts nodes best, judged by a model of few fetches.
+/// Returns the smoothness that predicts nodes best, judged with a model of few fetches.
 double WithinBytes::volume_smoothness(CostLimit limit) const {
   limit.fetches = std::min(limit.fetches, kSmoothnessFetches);
   const std::vector<ModelSpec> specs = volume_specs(source_.reference(), limit);
@@ -185,7 +184,8 @@ RefineOptions WithinBytes::options_of_hemispheres() const {
   return refine;
 }
 
-/// `from`: the specs to choose from, or the candidate that was chosen. The steps at all pairs look at albedos too.
+/// Fits hemispheres. `from`: the specs to choose from, or the chosen candidate. The steps on all pairs count albedos
+/// too.
 FittedLobes WithinBytes::fit_hemispheres_to(int fetches, TrainingSet set, const auto& from) const {
   RefineOptions refine = options_of_hemispheres();
   if (counts_albedos(source_, budget_.loss)) add_albedos(source_, set, refine);
@@ -209,7 +209,7 @@ FittedLobes WithinBytes::fit_nodes() const {
 
 // ---- At the knee
 
-/// By what models of an isotropic source do with few fetches and with many.
+/// Fits an isotropic source with the number of fetches at the knee of trials with few and with many fetches.
 FittedLobes WithinBytes::fit_at_isotropic_knee() const {
   const CostLimit limit = limit_of(bytes_, 0);
   const TrainingSet set = source_.drawn_set(training_for_volumes(limit), stages_);
@@ -221,12 +221,12 @@ FittedLobes WithinBytes::fit_at_isotropic_knee() const {
   return fitted;
 }
 
-/// The same of an anisotropic one.
+/// Fits an anisotropic source with the number of fetches at the knee of such trials.
 FittedLobes WithinBytes::fit_at_hemispheres_knee() const {
   const CostLimit limit = limit_of(bytes_, std::numeric_limits<int>::max());
   if (takes_lobes(source_.reference(), limit)) return fit_lobes();
   ChosenLobes lobes = choose_lobes();
-  lobes.set = {};  // drawn again where lobes are chosen: one set in memory at a time
+  lobes.set = {};  // drawn again if lobes are chosen: one set in memory at a time
   TrainingSet set = source_.drawn_set(training_for_hemispheres(), stages_);
   RefineOptions trials = options_of_hemispheres();
   trials.progress = stages_.of("choosing fetches");

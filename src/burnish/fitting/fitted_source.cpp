@@ -18,14 +18,14 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kMostScattered = 150'000;  // of more a part is fitted, since time grows with them
+constexpr std::size_t kMostScattered = 150'000;  // of more samples a part is fitted, to save time
 constexpr double kFrontalShare = 0.1;            // of pixels, see with_frontal_pixels
 
-// Pairs that the fit did not see, for the error that is reported.
+// Pairs that the fit did not see, for the reported error.
 constexpr std::size_t kHeldOutPairs = 20'000;
-constexpr int kHeldOutSphereSize = 128;  // of a baseline's the defaults of FigureOptions
+constexpr int kHeldOutSphereSize = 128;  // baselines use the defaults of FigureOptions
 
-/// Every so many of the samples, so that they are about `most`.
+/// Returns evenly spaced samples, at most `most` of them.
 Samples at_most(std::size_t most, const Samples& samples) {
   const std::size_t step = (samples.size() + most - 1) / most;
   if (step <= 1) return samples;
@@ -83,7 +83,7 @@ void FittedSource::take_nodes(const Stages& stages) {
       nodes_report_.emplace(NodesReport{.fitted = nodes_->size(), .outliers = measured - nodes_->size()});
   if (!nodes_->samples.isotropic) return;
 
-  // Between nodes of an isotropic source stands the function that predicts left-out nodes best.
+  // An isotropic source is interpolated between nodes by the function that predicts left-out nodes best.
   const auto told = stages.of("kriging the nodes");
   report.covariance = choose_covariance(*nodes_, told);
   report.held_out = held_out_figures(*nodes_, *report.covariance);
@@ -104,8 +104,8 @@ TrainingSet FittedSource::drawn_set(TrainingOptions drawn, const Stages& stages)
   return set;
 }
 
-/// Adds the function's values at the nodes, which crowd where highlights are, as pairs that together weigh what the
-/// others do.
+/// Adds pairs at the nodes, with the function's values. Nodes are dense at highlights. Together these pairs have the
+/// same weight as the other pairs.
 void FittedSource::add_nodes(TrainingSet& set) const {
   const double others = std::accumulate(set.weights.begin() + static_cast<std::ptrdiff_t>(set.picture_count),
                                         set.weights.end(), 0.0);

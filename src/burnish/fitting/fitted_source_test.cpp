@@ -16,7 +16,7 @@ Source glossy() {
   return {"glossy", parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5/0.3/0.1,kd=0.2"), {}};
 }
 
-/// Grey ones.
+/// Grey samples of a glossy surface.
 Source glossy_samples(std::size_t count) {
   const Samples drawn =
       measure(parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5,kd=0.2"), {.count = count, .seed = 3});
@@ -35,11 +35,11 @@ TEST(FittedSource, OfAFunctionDrawsPairsAsTheOptionsSay) {
   EXPECT_FALSE(fitted.judged_at_nodes());
   EXPECT_EQ(fitted.sample_source(1000, false).count, 300u);
 
-  // The seed alone decides which pairs.
+  // The pairs depend only on the seed.
   const TrainingOptions drawn{.pictures = 200, .directions = 100};
   const TrainingSet set = fitted.drawn_set(drawn, Stages(options)),
                     again = fitted.drawn_set(drawn, Stages(options));
-  EXPECT_GT(set.picture_count, 200u);  // with those lit from the viewer
+  EXPECT_GT(set.picture_count, 200u);  // with pixels lit from the viewer
   EXPECT_EQ(set.values, again.values);
   options.seed = 6;
   EXPECT_NE(fitted.drawn_set(drawn, Stages(options)).values, set.values);
@@ -52,7 +52,7 @@ TEST(FittedSource, OfScatteredSamplesIsThemOrTheFunctionBetweenThem) {
   EXPECT_TRUE(samples.scattered());
   EXPECT_EQ(samples.samples(), source.samples());
   EXPECT_FALSE(samples.nodes_report());
-  // Each sample stands for its swapped pair too.
+  // Each sample represents its swapped pair too.
   EXPECT_EQ(samples.training_set(false).size(), 2 * source.samples()->size());
 
   options.target = FitTarget::nodes;
@@ -61,7 +61,7 @@ TEST(FittedSource, OfScatteredSamplesIsThemOrTheFunctionBetweenThem) {
   const FittedSource nodes(source, options, Stages(options).with(" again"));
   EXPECT_EQ(nodes.samples(), nullptr);
   EXPECT_FALSE(nodes.scattered());
-  EXPECT_FALSE(nodes.judged_at_nodes());  // samples stand anywhere
+  EXPECT_FALSE(nodes.judged_at_nodes());  // samples have arbitrary directions
   ASSERT_TRUE(nodes.nodes_report());
   EXPECT_EQ(nodes.nodes_report()->fitted + nodes.nodes_report()->outliers, source.samples()->size());
   EXPECT_TRUE(nodes.nodes_report()->held_out);
