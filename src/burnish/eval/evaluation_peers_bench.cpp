@@ -45,7 +45,7 @@ HWY_INLINE void for_each_pair(const DirectionSpans& in, std::span<float> f, cons
   }
 }
 
-// Twice the difference vector, in the frame of the half vector; z is |wi + wo|.
+// Returns twice the difference vector, in the frame of the half vector; its z is |wi + wo|.
 HWY_INLINE Vector doubled_difference(const Vector& wi, const Vector& wo, const Vector& sum) {
   const Vector d{wi.x - wo.x, wi.y - wo.y, wi.z - wo.z};
   const Lane total = length(sum), across = sqrt(mul_add(sum.x, sum.x, sum.y * sum.y));
@@ -57,12 +57,13 @@ HWY_INLINE Vector doubled_difference(const Vector& wi, const Vector& wo, const V
 HWY_INLINE Vector sum_of(const Vector& a, const Vector& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
-// The polar angle of a vector of this length.
+// Returns the polar angle of a vector with this length.
 HWY_INLINE Lane polar_angle(const Vector& v, Lane total) {
   return Lane(2.0) * arctangent(sqrt(mul_add(v.x, v.x, v.y * v.y)) / (total + v.z));
 }
 
-// y = kernel^T x + bias, weights row by row, then the biases; optionally negatives cut off.
+// Computes y = kernel^T x + bias. The weights are stored row by row, then the biases. With kCutOff, negative results
+// become 0.
 template <int kInputs, int kOutputs, bool kCutOff>
 HWY_INLINE const float* affine(const float* weights, const Lane (&x)[kInputs], Lane (&y)[kOutputs]) {
   const D d;
@@ -126,7 +127,7 @@ void ggx(const Ggx& b, const DirectionSpans& in, std::span<float> f) {
     const Vector sum = sum_of(wi, wo);
     const Lane square = dot(sum, sum), cos_d = Lane(0.5) * sqrt(square);
     const Lane across = mul_add(sum.x, sum.x, sum.y * sum.y);
-    // (x^2 + y^2) / alpha^2 + z^2 of h, times alpha^2 square
+    // q is (x^2 + y^2) / alpha^2 + z^2 of h, times alpha^2 square.
     const Lane q = mul_add(a2 * sum.z, sum.z, across);
     const auto area = [&](Lane z) HWY_ATTR {  // twice the projected area
       return z + sqrt(mul_add(rest * z, z, a2));

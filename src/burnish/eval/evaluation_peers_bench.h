@@ -12,11 +12,12 @@
 
 namespace burnish {
 
-// Other representations evaluated as one would who wants them fast: in float, by the widest vectors, with the
-// spans and planes of FactoredEvaluator. Three channels; a multiple of 16 directions above the horizon.
+// Other representations, evaluated as fast as their users would: in float, with the widest vectors, and with the
+// spans and planes of FactoredEvaluator. All have three channels and take a multiple of 16 directions above the
+// horizon.
 
-/// A microfacet model of tables over angles in steps of pi/2 / (kAngles - 1), linear between them:
-/// diffuse + D(theta_h) F(theta_d) G(theta_i) G(theta_o) / (4 cos_i cos_o) [Bagher 2016].
+/// A microfacet model of tables over angles in steps of pi/2 / (kAngles - 1), interpolated linearly: diffuse +
+/// D(theta_h) F(theta_d) G(theta_i) G(theta_o) / (4 cos_i cos_o) [Bagher 2016].
 struct TabulatedMicrofacets {
   static constexpr int kAngles = 90;
   std::array<float, 3> diffuse{};
@@ -33,14 +34,14 @@ void eval_tabulated(const TabulatedMicrofacets& brdf, const DirectionSpans& dire
 /// The network of NeuralBrdf with these weights.
 void eval_neural(std::span<const float> weights, const DirectionSpans& directions, std::span<float> f);
 
-/// Isotropic.
+/// Evaluates an isotropic GGX model.
 void eval_ggx(const Ggx& brdf, const DirectionSpans& directions, std::span<float> f);
 
-/// The limit that reading tables sets: loads pairs of neighbouring nodes, eight floats from each place in the
-/// table, a multiple of eight, and adds them up.
+/// Measures the limit of table reads: loads pairs of neighbouring nodes and adds them up. Each load is eight floats
+/// from a place in the table; the number of places is a multiple of eight.
 float load_nodes(std::span<const float> table, std::span<const std::int32_t> node);
 
-/// The limit that arithmetic sets: fused multiply-adds in 16 independent chains. Returns how many.
+/// Measures the limit of arithmetic with fused multiply-adds in 16 independent chains. Returns their number.
 std::size_t multiply_add(std::size_t steps, float factor, std::span<float, 64> last);
 
 /// Evaluates as NearestHalfDiff does, with phi_d over half a circle.

@@ -312,8 +312,7 @@ HWY_INLINE void for_each_quad(std::size_t count, float* values, const StoreQuad&
       for (std::size_t k = 0; k < kFours; ++k) store_quad(i + four + k, values + 4 * i + k * kLanes + four);
 }
 
-// The running product of a lobe's lookups: it begins as the scale, and each lookup multiplies what the ones before
-// left.
+// The running product of a lobe's lookups. It begins with the scale, and each lookup multiplies it.
 struct Block {
   std::size_t stride, count;
   const float* positions;  // `stride` floats for each slot
@@ -337,7 +336,7 @@ using Multiply = void (*)(const FactoredPlan::Lookup& lookup, const float* table
 #if BURNISH_PLANES_IN_REGISTERS
 template <int kVectors, int kChannels, bool kShared>
 void multiply_planes(const FactoredPlan::Lookup& lookup, const float* table, const Block& block) {
-  // A short line is held in registers whole, so a lookup is a permutation and reads no memory.
+  // A short line fits in registers, so a lookup is a permutation and reads no memory.
   constexpr int kPlanes = kShared ? 1 : kChannels;
   Plane<kVectors> planes[kPlanes];
   for (int c = 0; c < kPlanes; ++c) planes[c].load(table + static_cast<std::size_t>(16 * kVectors * c));
@@ -469,8 +468,8 @@ HWY_INLINE void store_values(std::size_t count, std::size_t stored, const ValueP
   }
 }
 
-// Evaluates one group of channels for the projector's directions. kApart: each lobe's value, with its channels behind
-// those of the lobe before; else the sum of the lobes.
+// Evaluates one group of channels for the projector's directions. With kApart, each lobe gives its own values, and
+// its channels follow those of the lobe before; else the lobes are summed.
 template <int kChannels, bool kApart>
 void eval_group(const FactoredPlan& plan, std::size_t group, std::size_t stride, Scratch& scratch,
                 const ValuePointers& out) {

@@ -18,22 +18,22 @@ struct DirectionSpans {
   std::size_t size() const noexcept { return wi_x.size(); }
 };
 
-/// The same as rows of three floats (x, y, z), one after the other.
+/// Direction pairs as rows of three floats (x, y, z), one after the other.
 struct DirectionRows {
   std::span<const float> wi, wo;
 
   std::size_t size() const noexcept { return wi.size() / 3; }
 };
 
-/// Evaluates a factored BRDF in float, prepared once for many directions: what the factors share (half
-/// vectors, projections, positions in tables) is found beforehand and computed once a direction, and tables
-/// are copied with their channels padded to whole vectors. Satisfies Brdf. Never allocates after
-/// construction; copies share the tables, threads may share a copy.
+/// Evaluates a factored BRDF in float, prepared once for many directions. Values that factors share (half vectors,
+/// projections, positions in tables) are identified beforehand and computed once a direction. Tables are copied with
+/// their channels padded to whole vectors. Satisfies Brdf. Never allocates after construction. Copies share the
+/// tables, and threads may share a copy.
 ///
-/// Reciprocal models stay reciprocal to the last bit, and both forms of eval give the same bits. Against
-/// FactoredBrdf::eval of the same directions the relative error of values above 2^-126 is at most
-/// rounding_bound(); where a model has projections other than wi, wo, h and d, times the largest
-/// (sum of |coefficients|) / |combination|: terms that cancel leave their rounding errors.
+/// Reciprocal models stay reciprocal to the last bit, and both forms of eval give the same bits. The error is
+/// relative to FactoredBrdf::eval of the same directions: for values above 2^-126 it is at most rounding_bound(). If
+/// a model has projections other than wi, wo, h and d, the bound is multiplied by the largest (sum of |coefficients|)
+/// / |combination|, because terms that cancel leave their rounding errors.
 class FactoredEvaluator {
  public:
   /// Throws Error for models of more than 1024 different positions in tables.
@@ -42,26 +42,26 @@ class FactoredEvaluator {
   std::size_t channels() const noexcept;
   bool isotropic() const noexcept;
 
-  /// f_r in 1/sr, without the cosine, zero below the horizon: f[c * directions.size() + i] is channel c of
-  /// pair i; f has channels() * directions.size() entries. One plane a channel, as the directions have one a
-  /// component: what follows (cosine, light, sum) runs over the same lanes.
+  /// f_r in 1/sr, without the cosine, zero below the horizon: f[c * directions.size() + i] is channel c of pair i. f
+  /// has channels() * directions.size() entries. Each channel has one plane, as each component of the directions has,
+  /// so that later steps (cosine, light, sum) run over the same lanes.
   void eval(const DirectionSpans& directions, std::span<float> f) const noexcept;
 
-  /// The same for a part of larger planes: channel c of pair i is f[c * plane + i], plane >=
-  /// directions.size(), and f ends with the last value.
+  /// Evaluates into a part of larger planes: channel c of pair i is f[c * plane + i], plane >= directions.size(). f
+  /// ends with the last value.
   void eval(const DirectionSpans& directions, std::span<float> f, std::size_t plane) const noexcept;
 
-  /// Rows in, rows out: f[channels() * i + c] is channel c of pair i. The same bits.
+  /// Evaluates rows into rows: f[channels() * i + c] is channel c of pair i. The bits are the same.
   void eval(const DirectionRows& directions, std::span<float> f) const noexcept;
 
-  /// One pair, without a block's preparations; f has channels() entries. The same bits as of many.
+  /// Evaluates one pair, without the preparations for a block; f has channels() entries. The bits are the same.
   void eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept;
-  /// The same as a Brdf, for renderers that take any: true, and f_r in doubles.
+  /// Evaluates as a Brdf, for renderers that take any BRDF: returns true, and f_r in doubles.
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
-  /// The largest of the lobes' sums over their factors of 2^-24 (8 R + 16 axes (n - 1) (R - 1)): a position
-  /// is off by at most 16 * 2^-24 of an axis of n nodes, and a table's neighbouring entries differ by at most
-  /// the factor R. Steep tables make this pessimistic: it takes every lookup to be at its worst.
+  /// The largest, over the lobes, of the sum over their factors of 2^-24 (8 R + 16 axes (n - 1) (R - 1)). A position
+  /// is off by at most 16 * 2^-24 of an axis of n nodes, and neighbouring entries of a table differ by at most the
+  /// factor R. The bound assumes that every lookup has the worst case, so it is pessimistic for steep tables.
   double rounding_bound() const noexcept;
 
  private:

@@ -1,5 +1,5 @@
-// Evaluations a second of factored BRDFs beside tables and a formula, on one thread, three channels, random
-// directions: enough of them that a large table is read from where it lies, not from the cache.
+// Evaluations a second of factored BRDFs, compared with tables and a formula: one thread, three channels, random
+// directions. There are so many directions that large tables are read from memory, not from the cache.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -35,7 +35,7 @@ constexpr double kMaxError = 1e-5;  // mean relative error of an evaluator again
 const std::vector<DirectionPair>& bench_pairs() {
   static const std::vector<DirectionPair> pairs = [] {
     auto drawn = draw_pairs(kPairs, 1, false);
-    for (auto& [wi, wo] : drawn)  // to float, for all alike
+    for (auto& [wi, wo] : drawn)  // rounded to float, for all representations
       for (double* v : {&wi.x, &wi.y, &wi.z, &wo.x, &wo.y, &wo.z}) *v = static_cast<float>(*v);
     return drawn;
   }();
@@ -69,7 +69,7 @@ FactoredBrdf smooth_model(const char* expression, const std::vector<std::string>
   return from_log_tables(3, std::move(tables), std::move(lobes), TableFormat::half);
 }
 
-// The mean relative error of the first pairs; `value(i)` gives pair i's three channels.
+// The mean relative error over the first pairs; `value(i)` gives pair i's three channels.
 template <class Value, class Truth>
 double relative_error(const Value& value, const Truth& truth) {
   double error = 0;
@@ -87,8 +87,8 @@ double relative_error(const Value& value, const Truth& truth) {
 const Ggx& ggx();
 const NeuralBrdf& neural();
 
-// How long `run` takes beside `baseline`, each the shortest of some turns: what else the machine does changes
-// both alike.
+// Returns the time of `run` over that of `baseline`, each the shortest of several turns. Other load of the machine
+// affects both alike.
 template <class Run, class Baseline>
 double ratio(const Run& run, const Baseline& baseline) {
   const auto seconds = [](const auto& f) {
@@ -104,13 +104,13 @@ double ratio(const Run& run, const Baseline& baseline) {
   return least / least_baseline;
 }
 
-// As renderers hold all of them: the compiler neither knows what it is nor its parameters.
+// Hides a BRDF from the compiler, as in renderers: neither its type nor its parameters are known.
 BrdfRef unknown(BrdfRef brdf) {
   benchmark::DoNotOptimize(brdf);
   return brdf;
 }
 
-// One pair at a time. `truth` gives the values to compare with.
+// Evaluates one pair at a time. `truth` gives the values to compare with.
 template <class Eval>
 void one_by_one(benchmark::State& state, const Eval& eval, BrdfRef truth, double bound) {
   const auto& pairs = bench_pairs();
@@ -146,7 +146,7 @@ void one_by_one(benchmark::State& state, BrdfRef eval, double bound) {
   one_by_one(state, unknown(eval), eval, bound);
 }
 
-// All pairs at once; run(directions, f).
+// Evaluates all pairs at once by run(directions, f).
 template <class Run, class Truth>
 void batched(benchmark::State& state, const Run& run, const Truth& truth, double bound) {
   static const std::array<std::vector<float>, 6> in = [] {
@@ -196,7 +196,7 @@ void add_model(const std::string& name, const char* expression, const std::vecto
   });
 }
 
-// What a fit gives, of a measured file in BURNISH_DATA or else of the formula. Made when its first row runs.
+// A fit of a measured file in BURNISH_DATA, or else of the formula. It is made when its first row runs.
 struct Fitted {
   FactoredBrdf model;
   FactoredEvaluator evaluator;
@@ -275,8 +275,8 @@ const HalfDiffTable& merl() {
   return table;
 }
 
-// The peers, in float as fast as they can be written in a page, and those that the library has in double.
-// Errors of the tables are those of sampling the formula, large in the highlight and at grazing angles.
+// Adds the peers: in float, as fast as a page of code can be, and in double as the library has them. Errors of the
+// tables come from sampling the formula; they are large in the highlight and at grazing angles.
 void add_peers() {
   add("neural/one_by_one", [](benchmark::State& state) { one_by_one(state, BrdfRef(neural()), 0); });
   add("neural/batched", [](benchmark::State& state) {
@@ -313,8 +313,8 @@ void add_peers() {
   });
 }
 
-// What the machine does at most: pairs of nodes read at random from tables as large as those of a model, and
-// multiply-adds. A disk takes two pairs of nodes a lookup.
+// Adds the machine's limits: pairs of nodes read at random from tables as large as a model's, and multiply-adds. A
+// disk takes two pairs of nodes a lookup.
 void add_limits() {
   for (const std::size_t nodes : {std::size_t{128}, std::size_t{2 * 64 * 64}})
     add(fmt::format("limit/node_pairs_of_{}", nodes), [=](benchmark::State& state) {

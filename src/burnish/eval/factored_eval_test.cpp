@@ -62,7 +62,7 @@ FactoredBrdf random_model(const ModelCase& model) {
                   [&](std::size_t, const TableLayout&, int, int, int) { return -2 * random.uniform(); });
 }
 
-// Random pairs, the corners, and some below the horizon; more than one block, not whole blocks.
+// Random pairs, corners, and some pairs below the horizon. They are more than one block, and not whole blocks.
 std::vector<DirectionPair> test_pairs() {
   std::vector<DirectionPair> pairs = draw_pairs(997, 3, false);
   for (const DirectionPair& pair : corner_pairs()) pairs.push_back(pair);
@@ -89,7 +89,7 @@ std::vector<float> batched(const FactoredEvaluator& evaluator, std::span<const D
   return f;
 }
 
-// A model and one of the instruction sets compiled in that this processor has.
+// The parameters are a model and one of the compiled instruction sets that this processor has.
 class FactoredEvaluatorTest : public testing::TestWithParam<std::tuple<ModelCase, std::string>> {
  protected:
   static FactoredBrdf model() { return random_model(std::get<0>(GetParam())); }
@@ -102,7 +102,7 @@ TEST_P(FactoredEvaluatorTest, AgreesWithTheDoubleReferenceWithinItsBound) {
   const FactoredBrdf brdf = model();
   const FactoredEvaluator evaluator(brdf);
   ASSERT_EQ(evaluator.channels(), brdf.channels());
-  EXPECT_LT(evaluator.rounding_bound(), 0.02);  // random tables are as steep as this
+  EXPECT_LT(evaluator.rounding_bound(), 0.02);  // random tables are this steep
   const auto pairs = test_pairs();
   const std::vector<float> f = batched(evaluator, pairs);
   std::vector<double> truth(brdf.channels());
@@ -123,7 +123,7 @@ TEST_P(FactoredEvaluatorTest, AgreesWithTheDoubleReferenceWithinItsBound) {
       }
     }
   }
-  EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 2e-5);  // long tables are as steep as that
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 2e-5);  // long tables are this steep
 }
 
 TEST_P(FactoredEvaluatorTest, GivesTheSameBitsForOneDirectionAndForMany) {

@@ -9,13 +9,13 @@
 namespace burnish {
 namespace {
 
-/// A slot's position, and the projection it is of; of a disk's second slot the position of its first.
+/// A slot's position and its projection; a disk's second slot has the position of the first.
 struct SlotOwner {
   const FactoredPlan::Source* source;
   const FactoredPlan::Position* position;
 };
 
-/// By slot; fails where two positions have one.
+/// Returns owners by slot; fails if two positions share a slot.
 std::map<std::size_t, SlotOwner> slot_owners(const FactoredPlan& plan) {
   std::map<std::size_t, SlotOwner> owners;
   for (const auto& source : plan.sources)
@@ -25,7 +25,7 @@ std::map<std::size_t, SlotOwner> slot_owners(const FactoredPlan& plan) {
   return owners;
 }
 
-// What each lookup of each lobe needs, each position once.
+// The plan has what each lookup of each lobe needs, and each position once.
 TEST(FactoredPlan, LooksUpWhereTheModelDoes) {
   for (const ModelCase& model : kModelCases) {
     const FactoredBrdf brdf = smooth_model(model);
@@ -95,20 +95,20 @@ TEST(FactoredPlan, FindsWhatLobesShare) {
   const auto plan_of = [](const char* expression, const std::vector<std::string>& tables) {
     return FactoredPlan(random_model(expression, tables, 3, TableFormat::single));
   };
-  // both directions of a pair in one lookup, two positions
+  // Both directions of a pair share one lookup with two positions.
   const FactoredPlan pqp = plan_of("p(wo) q(h) p(wi)", {"p=8", "q=9"});
   EXPECT_EQ(pqp.lookups.size(), 2u);
   EXPECT_EQ(pqp.slots, 3u);
-  // h in as many cells is one position for all tables and lobes; in others it is another
+  // Tables and lobes with equal numbers of cells share one position of h; other numbers have another position.
   EXPECT_EQ(plan_of("q(h) r(h) + s(h)", {"q=9", "r=9", "s=9"}).slots, 1u);
   EXPECT_EQ(plan_of("q(h) r(h) + s(h)", {"q=9", "r=8", "s=9,power:0.5"}).slots, 3u);
-  // a power of one angle is found once for two numbers of nodes
+  // A power of one angle is computed once for two numbers of nodes.
   const FactoredPlan powers = plan_of("q(h) r(h)", {"q=9,power:0.3", "r=8,power:0.3"});
   ASSERT_EQ(powers.sources.size(), 1u);
   ASSERT_EQ(powers.sources[0].positions.size(), 2u);
   EXPECT_FALSE(powers.sources[0].positions[0].shares_power);
   EXPECT_TRUE(powers.sources[0].positions[1].shares_power);
-  // the fast way of two fetches is taken for its form alone
+  // The fast path of two fetches is used only for its form.
   EXPECT_TRUE(plan_of("z(h) v(theta_h,theta_d,phi_d)", {"z=9,power:0.5", "v=4x4x3"}).volume_and_line);
   EXPECT_TRUE(plan_of("v(theta_h,theta_d,phi_d)", {"v=4x4x3"}).volume_and_line);
   EXPECT_FALSE(plan_of("z(h) v(theta_d,theta_h,phi_d)", {"z=9,power:0.5", "v=4x4x3"}).volume_and_line);
@@ -117,7 +117,7 @@ TEST(FactoredPlan, FindsWhatLobesShare) {
 }
 
 TEST(FactoredPlan, RefusesMorePositionsThanItsKernelsHold) {
-  // lines of h, each of another number of nodes
+  // The model has lines of h, each with another number of nodes.
   const auto lines = [](std::size_t count) {
     std::vector<Table> tables;
     Lobe lobe{.scale = {1}, .factors = {}};

@@ -17,7 +17,7 @@ using DI = hn::RebindToSigned<D>;
 /// 1.5 2^23: added to a float it rounds it to a whole number, which stays in the low bits of the sum.
 constexpr double kRoundingShift = 12582912;
 
-/// A vector of as many floats as `Tag` says: the widest there is, or one for each of a few things.
+/// A vector with as many floats as `Tag` says: the widest vector, or one lane for each of a few values.
 template <class Tag>
 struct LaneOf {
   using Integers = hn::RebindToSigned<Tag>;
@@ -65,7 +65,7 @@ HWY_INLINE void store(Lane v, float* to) {
   hn::StoreU(v.raw, D(), to);
 }
 
-/// Text alone keeps the names that formulas give.
+/// Ignores the name: only formulas as text keep names.
 template <class T>
 HWY_INLINE T named(const char*, const T& x) {
   return x;

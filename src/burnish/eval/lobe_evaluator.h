@@ -9,9 +9,9 @@
 
 namespace burnish {
 
-/// Evaluates the lobes of a factored BRDF in float, each apart or with weights that change from call to call, as
-/// FactoredEvaluator evaluates their sum: positions that they share are found once. One or three channels. Never
-/// allocates after construction; copies share the tables, threads may share a copy.
+/// Evaluates the lobes of a factored BRDF in float, each by itself or as a sum with weights that change from call to
+/// call. As in FactoredEvaluator, positions that lobes share are computed once. It takes one or three channels. Never
+/// allocates after construction. Copies share the tables, and threads may share a copy.
 class LobeEvaluator {
  public:
   static constexpr std::size_t kMaxLobes = 64;
@@ -22,15 +22,15 @@ class LobeEvaluator {
 
   std::size_t channels() const noexcept;
   std::size_t lobes() const noexcept;
-  /// Relative, of a lobe's value: FactoredEvaluator's.
+  /// FactoredEvaluator's bound of the relative error, for the value of a lobe.
   double rounding_bound() const noexcept;
 
   /// f_r of each lobe with its scale, 1/sr, without the cosine, zero below the horizon: channel c of lobe j of pair i
   /// is f[(j * channels() + c) * directions.size() + i].
   void eval(const DirectionSpans& directions, std::span<float> f) const noexcept;
 
-  /// The sum over lobes of weights[kWeightStride * j + c] times the lobe's value in channel c, of one pair; unit
-  /// vectors. The fourth of a lobe's weights is read and not used.
+  /// The sum over lobes of weights[kWeightStride * j + c] times the lobe's value in channel c, for one pair of unit
+  /// vectors. The fourth weight of a lobe is read but not used.
   void eval(Vec3 wi, Vec3 wo, std::span<const float> weights, std::span<float> f) const noexcept;
 
  private:

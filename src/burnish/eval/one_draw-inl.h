@@ -100,7 +100,7 @@ HWY_INLINE OneEdgePair edge_pair(const std::uint16_t* table, Int i) {
   return {Int(at[0]), Int(static_cast<std::uint16_t>(at[1] - at[0]))};
 }
 
-// Counts the edges up to the target: a search by halves waits for every comparison.
+// Counts the edges up to the target. A binary search would wait for every comparison.
 template <int kSlices>
 HWY_INLINE Int search(const std::uint16_t* table, const Int (&start)[kSlices], const Real (&weight)[kSlices],
                       int count, Real target) {

@@ -26,7 +26,7 @@ using Eight = LaneOf<D8>;
 using DI8 = hn::RebindToSigned<D8>;
 constexpr std::size_t kEight = hn::MaxLanes(D8());  // fewer where vectors are shorter
 
-// Logarithms and exponentials are kept out of line: their constants would be loaded for all.
+// Logarithms and exponentials are kept out of line: otherwise their constants would be loaded for all models.
 template <class Tag>
 HWY_NOINLINE LaneOf<Tag> power_warp_apart(LaneOf<Tag> size, LaneOf<Tag> exponent,
                                           const Polar<LaneOf<Tag>>& polar) {
@@ -68,7 +68,8 @@ HWY_INLINE T stretched(FactoredPlan::Spacing spacing, T size, T parameter, const
   return identity_stretch(size, polar);
 }
 
-/// One pair: wi, wo, their sum and their difference are lanes; what the formulas take apart stands in all.
+/// One pair: wi, wo, their sum and their difference are lanes of `all`; values that the formulas take one by one fill
+/// all lanes.
 struct OnePair {
   LanesOf<D4> all;
   LanePairOf<D4> pair;
@@ -153,7 +154,7 @@ HWY_INLINE Polar<Four> angle_apart(const Projection& projection, const OnePair& 
                     [&](const auto& angle) HWY_ATTR { return Polar<Four>(angle(one.pair)); });
 }
 
-/// Finds the positions of disks and of angles that are too many, and writes them to their lanes of `given`.
+/// Finds the positions of disks, and of angles beyond the table's size, and writes them to their lanes of `given`.
 HWY_NOINLINE void find_given(const FactoredPlan& plan, const OnePair& one, float* given) {
   using Kind = FactoredPlan::Source::Kind;
   const LanesOf<D4> wi = one.of_all<0>(), wo = one.of_all<1>();
@@ -233,7 +234,7 @@ class AngleTable {
 #endif
 };
 
-/// Finds the polar angles one by one; the lanes after them are filled up.
+/// Finds the polar angles one by one; the remaining lanes are filled up.
 HWY_NOINLINE AngleTable angles_apart(const FactoredPlan& plan, const OnePair& one) {
   alignas(32) float r[FactoredPlan::Steps::kLanes], den[FactoredPlan::Steps::kLanes];
   for (std::size_t k = 0; k < FactoredPlan::Steps::kLanes; ++k) {

@@ -25,7 +25,7 @@ const std::vector<float>& table_of(float e) {
 }  // namespace
 }  // namespace burnish
 
-// The loops get the vectors the kernels get; power_baselines() checks that the processor has them.
+// The loops get the same vectors as the kernels; power_baselines() checks that the processor has them.
 #if defined(__x86_64__)
 #pragma GCC push_options
 #pragma GCC target("avx2,fma,avx512f,avx512dq,avx512bw,avx512vl,prefer-vector-width=512")
@@ -123,7 +123,7 @@ void fma_avx512(Cosines c, float a, std::span<float> out) {
   for (std::size_t i = 0; i + 16 <= c.size(); i += 16)
     _mm512_storeu_ps(&out[i], _mm512_fmadd_ps(k, _mm512_loadu_ps(&c[i]), k));
 }
-// Sixteen multiply-adds a value in eight chains: what the arithmetic alone can do.
+// Sixteen multiply-adds a value in eight chains measure the limit of the arithmetic alone.
 void fma_chain_avx2(Cosines c, float a, std::span<float> out) {
   const __m256 k = _mm256_set1_ps(a);
   for (std::size_t i = 0; i + 64 <= c.size(); i += 64) {
@@ -169,7 +169,7 @@ std::vector<PowerBaseline> power_limits() {
 std::vector<PowerBaseline> power_baselines() {
   std::vector<PowerBaseline> all;
 #if defined(__x86_64__)
-  // Without AVX-512 the kernels are compared with nothing rather than with slower loops.
+  // Without AVX-512 there are no baselines, since slower loops would make no fair comparison.
   if (!__builtin_cpu_supports("avx512dq") || !__builtin_cpu_supports("avx512vl")) return all;
 #endif
   all = {{"std::pow(double)", &std_pow, 1e-7}, {"powf", &powf_loop, 1e-7}};

@@ -7,7 +7,7 @@
 
 namespace burnish {
 
-/// A way to raise floats to one exponent that is not ours: what the kernels are measured against.
+/// A way from outside the library to raise floats to one exponent, with which the kernels are compared.
 struct PowerBaseline {
   std::string name;
   void (*run)(std::span<const float> cosines, float exponent, std::span<float> out);
@@ -17,8 +17,9 @@ struct PowerBaseline {
 /// The baselines that this processor and build can run.
 std::vector<PowerBaseline> power_baselines();
 
-/// No powers but the least that a loop over memory can do, for AVX2 and AVX-512: a copy, one multiply-add a value, and
-/// sixteen of them, whose time beside that of one is the arithmetic's alone. Their allowed error is -1.
+/// Not powers, but the least work that a loop over memory can do, for AVX2 and AVX-512: a copy, one multiply-add a
+/// value, and sixteen multiply-adds. The difference of the last two is the time of the arithmetic alone. Their
+/// allowed error is -1.
 std::vector<PowerBaseline> power_limits();
 
 }  // namespace burnish

@@ -45,9 +45,9 @@ HWY_INLINE Lane falling_line(Lane k, const GivenCosine& p);
 
 #include <burnish/power/forms-inl.h>
 
-// NearExact on vectors. Ports that multiply floats are the narrow place, so that whatever integers and logic can do
-// is theirs. Its coefficients are those of the polynomial log2_ratio times the exponent, made once for a span; octaves
-// are counted in units of `kOctave`.
+// NearExact on vectors. Ports that multiply floats are the bottleneck, so integers and logic do as much as possible.
+// Its coefficients are those of the polynomial log2_ratio times the exponent, computed once a span; octaves are
+// counted in units of `kOctave`.
 #if BURNISH_TARGET_IS_AVX3
 constexpr double kOctave = 1;
 #else
@@ -67,7 +67,8 @@ struct NearExactSpan {
   }
 };
 
-// Splits c = m 2^n by its bits, as mantissa.h says: what exceeds kLeastMantissaBits, without its mantissa, is n 2^23.
+// Splits c = m 2^n by its bits, as in mantissa.h: the excess over kLeastMantissaBits, without its mantissa, is n
+// 2^23.
 struct SplitLane {
   Lane exponent, mantissa;  // n 2^23 and m
 };
@@ -88,7 +89,7 @@ HWY_INLINE Lane exp2_of_octaves(Lane y) {
 #else
   const DI di;
 #if HWY_TARGET == HWY_AVX2
-  const hn::Vec<DI> fixed{_mm256_cvtps_epi32(y.raw.raw)};  // it fits: Highway would see to sums that do not
+  const hn::Vec<DI> fixed{_mm256_cvtps_epi32(y.raw.raw)};  // it fits; Highway also handles larger sums
 #else
   const auto fixed = hn::NearestInt(y.raw);
 #endif
@@ -113,7 +114,8 @@ HWY_INLINE Lane near_exact_kernel(Lane c, Lane e) {
   return exp2_of_octaves(max(mul_add(Form::log2_ratio(t), by_t, by_n), Lane(Form::kMinPower * kOctave)));
 }
 
-// The polynomial by its even and odd halves: half as long a chain of multiply-adds for one multiply more.
+// Evaluates the polynomial by its even and odd halves: the chain of multiply-adds is half as long, for one more
+// multiply.
 template <class L, std::size_t count>
 HWY_INLINE L polynomial_by_halves(L x, const double (&k)[count]) {
   const L square = x * x;
@@ -227,12 +229,12 @@ HWY_INLINE Lane power_at_inflection(Lane inverse) {
   return NearExact::value(Cosine<Lane>{Lane(1.0) - inverse, inverse}, &k);
 }
 
-// A cosine that is a float itself, not computed from others with rounding.
+// A cosine that is a given float, not computed with rounding.
 struct GivenCosine : Cosine<Lane> {};
 HWY_INLINE GivenCosine cosine(Lane c) {
   return {{c, Lane(1.0) - c}};
 }
-// From k = 1/2 on 1 - k is exact, so a fused k c + (1 - k) rounds once, as 1 - k u does; and u is not needed.
+// From k = 1/2 on 1 - k is exact, so a fused k c + (1 - k) rounds once, as 1 - k u does, and u is not needed.
 HWY_INLINE Lane falling_line(Lane k, const GivenCosine& p) {
 #if HWY_NATIVE_FMA
   return mul_add(k, p.c, Lane(1.0) - k);

@@ -1,5 +1,5 @@
-// Highway 1.4's own powers, beside ours: its headers only, under a namespace of their own, since the library is built
-// with whichever Highway the system has.
+// Highway 1.4's own powers for comparison. Only its headers are used, in a namespace of their own, because the
+// library is built with the system's version of Highway.
 #include "power_rivals_bench.h"
 
 #if BURNISH_HAVE_HIGHWAY_RIVAL && defined(__x86_64__)

@@ -39,7 +39,7 @@ void constant_kernel(const float* cosines, std::size_t count, const double* coef
                      [=](const Lane(&in)[1]) HWY_ATTR { return Form::value(cosine(in[0]), k); });
 }
 
-// The two that prepare more for a span than coefficients. With 16 registers, more vectors a turn would spill.
+// These two kernels prepare more than coefficients for a span. With 16 registers, more vectors a turn would spill.
 constexpr int kNearExactUnroll = BURNISH_TARGET_IS_AVX3 ? 4 : 2;
 template <>
 void constant_kernel<NearExact>(const float* cosines, std::size_t count, const double* coefficients,
@@ -78,8 +78,8 @@ concept PowerOfClampedForm = requires {
   Form::kLog2Power;
 };
 
-// diffuse + specular * power: in general, and for powers of a clamped form without its two outer multiplies.
-// There u is scaled so that the leading coefficient is 1, and the form so that its power includes the weight.
+// Computes diffuse + specular * power. Powers of a clamped form save their two outer multiplies: u is scaled so that
+// the leading coefficient is 1, and the form so that its power includes the weight.
 template <class Form>
 struct Highlight {
   double u_scale = 1;
@@ -100,7 +100,7 @@ struct Highlight<Form> {
   explicit Highlight(const ShadeArguments& a) {
     constexpr int kDegree = Form::kCoefficients;
     static_assert(kDegree == 1 || kDegree == 3);
-    constexpr double kMin = 1e-30;  // instead of 0, which no leading coefficient could be scaled from
+    constexpr double kMin = 1e-30;  // instead of 0, which would make scaling by it impossible
     double root = std::max<double>(a.specular, kMin);
     for (int i = 0; i < Form::kLog2Power; ++i) root = std::sqrt(root);
     top = Lane(root);
@@ -124,7 +124,7 @@ void shade_kernel(const ShadeArguments& a, float* out) {
     const Lane inverse = Lane(1.0) / sqrt(mul_add(n[0], n[0], mul_add(n[1], n[1], n[2] * n[2])));
     const Lane diffuse = clamp_negative(mul_add(n[0], lx, mul_add(n[1], ly, n[2] * lz))) * inverse;
     const Lane to_half = clamp_negative(mul_add(n[0], hx, mul_add(n[1], hy, n[2] * hz)));
-    // 1 - c first: one operation, and never negative by rounding.
+    // 1 - c comes first: it takes one operation, and rounding never makes it negative.
     const Lane u = clamp_negative(neg_mul_add(to_half, inverse, u_at_0));
     return highlight.added_to(diffuse, u);
   });
@@ -202,7 +202,7 @@ void shade_blinn_phong(const BlinnPhongShading& material, const NormalSpans& nor
 double power_span_rounding(PowerMethod method, bool exponent_per_value) noexcept {
   using M = PowerMethod;
   if (method == M::gaussian || method == M::gaussian2) return 7.2e-5;  // NearExact::exp2_near_zero_short
-  // Their a comes from the near-exact power times the exponent.
+  // The coefficient a of these methods comes from the near-exact power times the exponent.
   const bool by_equation_7 =
       method == M::quadratic || method == M::quadratic_raw || method == M::two_piece_paper;
   if (by_equation_7 && exponent_per_value) return 2e-5;

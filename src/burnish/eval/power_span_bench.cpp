@@ -1,9 +1,9 @@
-// Speed beside error of every way to c^e, in one run. Answers are checked against the double power before
-// anything is timed. The printed table takes the least of the repetitions. It gives how many times as fast as the
-// baseline a way is (BURNISH_BENCH_BASELINE names it, highway_fastpow_false where it is unset), how many multiply-adds
-// over memory it takes, and its time over the limit: a copy, or its own multiply-adds and compares at the processor's
-// full rate. Each ratio is between ways of one target and memory level. `--benchmark_filter` and the other flags of
-// Google Benchmark work.
+// Speed and error of every way to compute c^e, in one run. Answers are checked against the double power before
+// timing. The printed table uses the shortest of the repetitions and gives three ratios for each way: its speed over
+// that of the baseline (named by BURNISH_BENCH_BASELINE, by default highway_fastpow_false); its time in multiply-adds
+// over memory; and its time over the limit, a copy or its own multiply-adds and compares at the processor's full
+// rate. Each ratio compares ways of one target and memory level. `--benchmark_filter` and the other flags of Google
+// Benchmark work.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -38,8 +38,8 @@ struct Level {
 };
 constexpr Level kLevels[] = {{"L1", 2048}, {"L2", 65536}, {"RAM", std::size_t{1} << 24}};
 
-// Whole pages: every vector in one cache line, and no store shortly before a load at the same place of
-// another page, for which loads wait.
+// Allocates whole pages, so that every vector lies in one cache line. It also avoids stores shortly before a load at
+// the same place of another page, for which loads would wait.
 template <class T>
 struct PageAllocator {
   using value_type = T;
@@ -64,7 +64,7 @@ Floats bench_cosines(std::size_t count) {
 
 using Run = std::function<void(std::span<const float>, std::span<float>)>;
 
-// What is known of a way before it is timed; both errors are -1 where the way is no power.
+// The properties of a way before it is timed; both errors are -1 if it is no power.
 struct Way {
   double error = -1;           // largest |answer - power|
   double relative_error = -1;  // largest |answer / power - 1| where the power is at least 1/255
@@ -87,14 +87,15 @@ Way measured_way(std::span<const float> c, std::span<const float> out) {
   return way;
 }
 
-// "avx2" or "avx512" where the name ends so.
+// Returns "avx2" or "avx512" if the name ends so.
 std::string target_of(const std::string& name) {
   for (const char* target : {"avx2", "avx512"})
     if (name.ends_with(target)) return target;
   return {};
 }
 
-// Registers one way at every memory level, after its answers were found within `allowed`; `simd` limits our kernels.
+// Registers one way at every memory level, once its answers are within `allowed`; `simd` limits the library's
+// kernels.
 void add(const std::string& name, double allowed, const Run& run, int operations = 0,
          const std::optional<std::string>& simd = {}) {
   const Floats probe = bench_cosines(4096);
@@ -166,7 +167,7 @@ void add_shading(const std::string& name, std::optional<PowerMethod> method) {
   });
 }
 
-// The way a benchmark of this file times: its name without the memory level.
+// Returns the way that a benchmark of this file times: its name without the memory level.
 std::string way_of(const std::string& name) {
   return name.substr(0, name.rfind('/'));
 }
@@ -197,12 +198,13 @@ class TableReporter : public benchmark::ConsoleReporter {
   }
 
  private:
-  // The time of a way of the same target and level, 0 where it was not run.
+  // Returns the time of a way of the same target and level, 0 if it was not run.
   double time_of(const std::string& way, const std::string& target, const std::string& level) const {
     const auto at = least_.find(way + (target.empty() ? "" : "_" + target) + level);
     return at == least_.end() ? 0 : at->second;
   }
-  // No loop of `operations` multiply-adds a value is faster than this: the copy's time or that of the arithmetic.
+  // Returns the least time of any loop with `operations` multiply-adds a value: the copy's time or that of the
+  // arithmetic.
   double limit_of(const Way& way, const std::string& level) const {
     const double per_operation =
         (time_of("fma_x16", way.target, level) - time_of("fma", way.target, level)) / 15;
@@ -236,7 +238,8 @@ class TableReporter : public benchmark::ConsoleReporter {
   std::vector<std::string> order_;
 };
 
-// One of our members for one target, with one exponent for all and, where `exponents` is long enough, one for each.
+// Adds one of the library's members for one target, with one exponent for all values. If `exponents` is long enough,
+// it also adds the member with one exponent a value.
 void add_member(const PowerInfo& info, const std::string& simd, const std::string& target,
                 std::span<const float> exponents) {
   const double bound = power_bound(info.method, kExponent);
@@ -261,7 +264,7 @@ void add_member(const PowerInfo& info, const std::string& simd, const std::strin
 
 void add_all() {
   std::vector<PowerBaseline> others = power_limits();
-  if (!others.empty())  // else this processor lacks what they need
+  if (!others.empty())  // otherwise this processor lacks what they need
     for (const auto& more : {power_baselines(), highway_rivals()})
       others.insert(others.end(), more.begin(), more.end());
   for (const PowerBaseline& other : others)
@@ -270,7 +273,7 @@ void add_all() {
     });
   static const Floats exponents(kLevels[2].count, static_cast<float>(kExponent));
   for (const PowerInfo& info : power_methods()) {
-    if (info.method == PowerMethod::quadratic_raw) continue;  // as fast as quadratic, not a power
+    if (info.method == PowerMethod::quadratic_raw) continue;  // it is as fast as quadratic, and no power
     bool any = false;
     for (const std::string& simd : simd_targets()) {
       const std::string target = simd == "AVX2" ? "_avx2" : simd == "AVX3" ? "_avx512" : "";

@@ -12,7 +12,7 @@
 namespace burnish {
 namespace {
 
-// Cosines over [0, 1] and crowded near 1 where large exponents live, corners first.
+// Cosines over [0, 1], dense near 1 where large exponents matter; corners come first.
 std::vector<float> test_cosines(double exponent, std::size_t count, Pcg32& random) {
   std::vector<float> c{1, 0, 0x1p-149f, 0x1p-126f, 0x1p-24f, 1 - 0x1p-24f, 0.5f, 2.0f / 3};
   while (c.size() < count) {
@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(Members, PowerSpan,
                          testing::ValuesIn(power_methods().begin(), power_methods().end()),
                          [](const auto& member) { return std::string(member.param.name); });
 
-// Distance from c^e in units of the last place that a float of its size has, down to the least denormal.
+// The distance from c^e in units of the last place of a float of its size, down to the smallest denormal.
 double ulps_off(float found, float c, double e) {
   const long double power = std::pow(static_cast<long double>(c), static_cast<long double>(e));
   int exponent = 0;
@@ -148,7 +148,7 @@ TEST(PowerSpans, ThereIsAWideTargetAndAFallback) {
   EXPECT_GE(simd_targets().size(), 2u);
 }
 
-// Normals of lengths from 0.2 to 2.2, some turned away; the first is the mirror's.
+// Normals with lengths from 0.2 to 2.2, some turned away; the first is that of the mirror direction.
 struct Normals {
   std::vector<float> x, y, z;
   void add(const Vec3& n) {
@@ -201,7 +201,7 @@ TEST_P(PowerSpan, ShadesAHighlightOfAnyWeight) {
           const double c = std::clamp(blinn_cosine(material.wi, material.wo, n), 0.0, 1.0);
           const double expected =
               0.25 * std::max(0.0, dot(n, material.wi)) + weight * power(*material.power, c);
-          // The cosine's rounding, a few units of 2^-24, grows with the power's slope of at most e.
+          // The cosine's rounding is a few units of 2^-24; the power's slope of at most e multiplies it.
           const double rounding = 8 * 0x1p-24 * e + allowance(GetParam().method, static_cast<float>(c), e);
           ASSERT_NEAR(out[i], expected, 1e-6 + weight * rounding)
               << target << " e " << e << " weight " << weight;

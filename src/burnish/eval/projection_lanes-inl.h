@@ -84,8 +84,8 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<Tag>> excess_of(LaneOf<Tag> x, LaneOf<Tag>
   const LaneOf<Tag> signed_excess = mul_add(x, x, mul_add(y, y, mul_add(z, z, LaneOf<Tag>(-1.0))));
   return hn::BitCast(hn::RebindToSigned<Tag>(), hn::Abs(signed_excess.raw));
 }
-/// A vector whose squared length is off by this and more is no direction: 1 % of length, as readers of directions ask
-/// for.
+/// A vector is no direction if its squared length is off by at least this: 1 % of length, as in readers of
+/// directions.
 constexpr float kMaxExcess = 0.02f;
 /// Returns the lanes whose vectors are no directions.
 HWY_INLINE hn::Mask<DI> no_directions(hn::Vec<DI> excess) {

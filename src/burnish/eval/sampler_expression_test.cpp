@@ -36,7 +36,7 @@ TEST(SamplerExpression, DrawsAndWeighsAsTheSamplerDoes) {
       const DrawnDirection expected = sampler.sample_wi(wo, u);
       const auto values = graph_values(draw, inputs);
       const Vec3 wi{values[outputs[0]][0], values[outputs[1]][0], values[outputs[2]][0]};
-      // the sampler searches in float: some land on the other side of a cell's border
+      // The sampler searches in float, so some draws land on the other side of a cell's border.
       same += length(wi - expected.wi) < 1e-5 && std::abs(values[outputs[3]][0] / expected.pdf - 1) < 1e-4;
 
       inputs.values = {{"wi_x", {expected.wi.x}}, {"wi_y", {expected.wi.y}}, {"wi_z", {expected.wi.z}},

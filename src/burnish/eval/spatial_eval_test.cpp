@@ -22,7 +22,7 @@ struct PairPlanes {
   DirectionSpans spans() const { return {w[0], w[1], w[2], w[3], w[4], w[5]}; }
 };
 
-// Each lobe apart is what a model of that lobe alone gives; of one channel and of three, of one lobe and of many.
+// Each lobe by itself equals a model of that lobe alone, for one and three channels, and for one lobe and many.
 TEST(LobeEvaluator, GivesEveryLobeApart) {
   for (const char* name : {"Volume", "ThreeLobes", "Shared", "ManyTables", "Volumes", "RootWarps"}) {
     const FactoredBrdf brdf = smooth_model(model_case(name));
@@ -46,7 +46,7 @@ TEST(LobeEvaluator, GivesEveryLobeApart) {
   }
 }
 
-// One pair with weights is the sum of the lobes apart times these.
+// One pair with weights is the weighted sum of the single lobes.
 TEST(LobeEvaluator, WeighsTheLobesOfOnePair) {
   for (const char* name : {"Volume", "ThreeLobes", "ManyTables", "RootWarps"}) {
     const FactoredBrdf brdf = smooth_model(model_case(name));
@@ -86,7 +86,7 @@ TEST(SpatialEvaluator, AgreesWithTheDefinition) {
     const Vec3 wi = normalize({random.uniform() - 0.5, random.uniform() - 0.5, random.uniform()});
     const Vec3 wo = normalize({random.uniform() - 0.5, random.uniform() - 0.5, random.uniform()});
     const SpatialEvaluator::Place place = fast.place(u, v, lod);
-    // what is near the shading horizon is not on the same side of it in both
+    // Directions near the shading horizon may lie on different sides of it in both evaluators.
     if (std::min(std::abs(place.frame.local(wi).z), std::abs(place.frame.local(wo).z)) < 1e-5) continue;
     fast.eval(place, wi, wo, found);
     surface.eval(u, v, lod, wi, wo, expected);

@@ -16,7 +16,8 @@
 #ifndef BURNISH_EVAL_ONE_DRAW
 #define BURNISH_EVAL_ONE_DRAW
 namespace burnish {
-/// SamplerView in floats, and what draws from it: of the instruction set that was chosen when the sampler was made.
+/// SamplerView in floats, with the function that draws from it, for the instruction set chosen when the sampler was
+/// made.
 struct OneDraw {
   float sharpness = 0, share = 0, xx = 0, xy = 0, yy = 0, theta_scale = 0, last_ring = 0, turn_per_row = 0,
         per_column = 0, cells = 0;
@@ -211,8 +212,8 @@ struct TabulatedSampler::Tables {
   }
   Tables(const Tables&) = delete;
 
-  // Returns the size of what is reflected. For isotropic BRDFs one side of the plane of wo, y = 0, stands for the
-  // mean of both. A measured BRDF need not be its own mirror image.
+  // Returns the size of the reflected light. For isotropic BRDFs it is the mean of both sides of the plane of wo, y =
+  // 0: a measured BRDF need not be its own mirror image.
   double size_of(BrdfRef brdf, Vec3 wi, Vec3 wo, std::span<double> f) const {
     const double one = reflected_size(brdf, wi, wo, f);
     return isotropic ? 0.5 * (one + reflected_size(brdf, {wi.x, -wi.y, wi.z}, wo, f)) : one;
@@ -234,9 +235,9 @@ struct TabulatedSampler::Tables {
     return fit_visible_half_map(views, isotropic, options.rows, options.columns);
   }
 
-  // Tabulates a mass for each cell of the map at wo: the root of the mean square g^2 of what is reflected in it.
-  // Weights g / mass have the second moment sum of mean(g^2) / mass. Of all masses with one sum, this one makes it
-  // least; where all in a cell is alike it is the mean.
+  // Tabulates a mass for each cell of the map at wo: the root of the mean square of g, the reflected light in it.
+  // Weights g / mass have the second moment sum of mean(g^2) / mass. Among all masses with one sum, this one
+  // minimizes it. If g is constant in a cell, the mass is its mean.
   template <bool kIsotropic>
   void add_slice(BrdfRef brdf, Vec3 wo, std::span<double> f) {
     constexpr int kAcross = 4;  // points along each axis of a cell
@@ -252,7 +253,7 @@ struct TabulatedSampler::Tables {
                                                       turn * (row + (i + 0.5) / kAcross),
                                                       (column + (j + 0.5) / kAcross) / view.columns, 1.0);
             if (!(wi.z > 0)) continue;
-            // g is what is reflected per unit of turn and v: the value over the map's density.
+            // g is the reflected light per unit of turn and v: the value over the map's density.
             const double g = size_of(brdf, {wi.x, wi.y, wi.z}, wo, f) / wi.density;
             squares += g * g;
           }

@@ -18,7 +18,7 @@ struct DrawSpans {
   std::size_t size() const noexcept { return wo_x.size(); }
 };
 
-/// The directions drawn for them.
+/// The directions that are drawn, with their densities.
 struct DrawnSpans {
   std::span<float> wi_x, wi_y, wi_z, pdf;
 };
@@ -34,43 +34,43 @@ struct SamplerOptions {
 /// The sizes that docs/guide/evaluation.md recommends.
 SamplerOptions default_sampler_options(bool isotropic) noexcept;
 
-/// A sampler's tables, for programs that draw by themselves (a shader, a tracer that compiles its own code)
-/// with the formulas that eval/sampler_expression.h gives as graphs. Valid as long as the sampler or a copy of
-/// it.
+/// A sampler's tables, for programs that draw directions themselves (a shader, a tracer that compiles its own code).
+/// eval/sampler_expression.h gives the formulas as graphs. Valid as long as the sampler or a copy of it.
 struct SamplerTables {
   bool isotropic = true;
   double sharpness = 0, share = 0, xx = 1, xy = 0, yy = 1;  ///< as in VisibleHalfMap
   int thetas = 0, phis = 0, rows = 0, columns = 0;          ///< as in SamplerOptions
   double theta_scale = 0, ring_reach = 0;  ///< rings of wo per t / (ring_reach - t), t = tan(theta_o / 2)
-  /// Cumulative masses in 1/65536: of the rows of a slice, and of the cells of a row; slices and rows one
-  /// after the other, an entry 0 at the end.
+  /// Cumulative masses in 1/65536: of the rows of a slice, and of the cells of a row. Slices and rows follow each
+  /// other; an entry 0 ends each table.
   std::span<const std::uint16_t> row_edges, cell_edges;
 };
 
-/// Draws directions nearly in proportion to f_r cos(theta_i), of all lobes at once. When it is made, it finds the
-/// root mean square of the light reflected towards wo over cells of half vectors: the mass that gives weights the
-/// least second moment. A draw is two searches in 16-bit tables and a closed map. Cells cover exactly the half
-/// vectors visible from wo whose mirror direction lies above the horizon, so none is wasted, and are narrow where the
-/// material has its highlights. Between the wo of the tables densities are interpolated. Satisfies DirectionSampler.
+/// Draws directions nearly in proportion to f_r cos(theta_i), for all lobes at once. The constructor finds the root
+/// mean square of the light reflected towards wo in cells of half vectors. This mass minimizes the second moment of
+/// the weights. A draw is two searches in 16-bit tables and a map in closed form. Cells cover exactly the half
+/// vectors that are visible from wo and whose mirror direction lies above the horizon, so no draw is wasted. They are
+/// narrow at the material's highlights. Densities are interpolated between the wo of the tables. Satisfies
+/// DirectionSampler.
 ///
-/// Made from any BRDF, factored or measured; one whose isotropic() is true is drawn alike on both sides of
-/// the plane of wo and the normal, by their mean: unbiased where they differ, with weights as uneven. Never
-/// allocates after construction; copies share the tables, threads may share a copy. u.x turns the half vector
-/// about the normal, u.y tilts it, both without jumps, so that stratified points stay stratified.
+/// Takes any BRDF, factored or measured. If its isotropic() is true, both sides of the plane of wo and the normal are
+/// drawn alike, by their mean. If the sides differ, draws stay unbiased, but weights are as uneven as the sides.
+/// Never allocates after construction. Copies share the tables, and threads may share a copy. u.x turns the half
+/// vector about the normal and u.y tilts it, both without jumps, so that stratified points stay stratified.
 class TabulatedSampler {
  public:
   explicit TabulatedSampler(BrdfRef brdf);
   /// Throws Error for sizes out of range.
   TabulatedSampler(BrdfRef brdf, const SamplerOptions& options);
 
-  /// In float: directions are within 1e-4, densities within 1e-3 of the formulas in double, but for draws that rounding
-  /// moves over the border of a cell.
+  /// Computes in float: directions are within 1e-4, and densities within 1e-3, of the formulas in double. Draws that
+  /// rounding moves across the border of a cell are exceptions.
   DrawnDirection sample_wi(Vec3 wo, Point2 u) const noexcept;
   double pdf(Vec3 wi, Vec3 wo) const noexcept;
 
-  /// The same in float, many at a time, by the widest vectors the processor has; spans of one length.
+  /// Draws many directions at a time in float, with the widest vectors of the processor; all spans have one length.
   void sample_wi(const DrawSpans& in, const DrawnSpans& out) const noexcept;
-  /// pdf[i] of pair i; directions as unit vectors.
+  /// Finds pdf[i] of pair i; directions are unit vectors.
   void pdf(const DirectionSpans& directions, std::span<float> pdf) const noexcept;
 
   SamplerTables tables() const noexcept;

@@ -1,5 +1,5 @@
-// Directions drawn a second, with their densities, on one thread, beside evaluation of the same model and the
-// baselines. wo are random, so that table rows come from where they lie.
+// Directions drawn a second, with their densities, on one thread, compared with evaluation of the same model and with
+// the baselines. wo are random, so that table rows are not already in the cache.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -46,10 +46,10 @@ const Inputs& inputs() {
   return made;
 }
 
-// Of the draws, |pdf(wi, wo) / pdf - 1|.
+// The disagreement |pdf(wi, wo) / pdf - 1| of the draws.
 struct Disagreement {
-  double mean = 0;        ///< of those that stay in their cell
-  double at_borders = 0;  ///< the share of the others: rounding counts them to the next cell
+  double mean = 0;        ///< over draws that stay in their cell
+  double at_borders = 0;  ///< the share of the other draws, which rounding moves to the next cell
 };
 constexpr double kAtBorder = 1e-3, kMaxAtBorders = 5e-3;
 
@@ -74,7 +74,7 @@ Disagreement disagreement(const Sampler& sampler) {
   return found;
 }
 
-// A line of the report: items a second, with the mean relative error of the densities.
+// Reports a line: items a second, with the mean relative error of the densities.
 void finish(benchmark::State& state, double error, std::size_t items) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(items));
   state.counters["relative_error"] = error;
@@ -125,7 +125,7 @@ struct Batch {
     const auto& in = inputs().planes;
     return {out[0], out[1], out[2], in[0], in[1], in[2]};
   }
-  // against the scalar form
+  // The error of densities, compared with the scalar form.
   double error(const TabulatedSampler& sampler) const {
     double sum = 0;
     for (std::size_t i = 0; i < kCount; ++i) {
@@ -200,7 +200,7 @@ FactoredBrdf fitted(const char* spec, const char* expression, const std::vector<
   return fit_homomorphic(source, parse_model_spec(expression, tables, brdf.isotropic()), {}).brdf;
 }
 
-// The lobes of two models of disjoint tables.
+// Joins the lobes of two models whose tables are disjoint.
 FactoredBrdf sum_of(const FactoredBrdf& a, const FactoredBrdf& b) {
   std::vector<Table> tables(a.tables().begin(), a.tables().end());
   std::vector<Lobe> lobes(a.lobes().begin(), a.lobes().end());

@@ -18,7 +18,7 @@
 namespace burnish {
 namespace {
 
-// With lobes that are drawn well: lines, disks and grids, every warp and kind of projection, one lobe and
+// Models whose lobes are sampled well: lines, disks and grids, every warp and kind of projection, one lobe and
 // several.
 const ModelCase kModels[] = {
     {"Pqp", "pqp", {"p=16", "q=64,rational:0.05"}, 3},
@@ -67,7 +67,7 @@ FactoredBrdf glossy_model(const ModelCase& model) {
   return from_log_tables(model.channels, std::move(tables), std::move(lobes), TableFormat::half);
 }
 
-// Normal, grazing, and between.
+// Views along the normal, at grazing angles, and between.
 std::vector<Vec3> views(bool isotropic) {
   std::vector<Vec3> wo;
   for (const double theta_deg : {0.0, 3.0, 25.0, 48.0, 71.0, 86.0, 89.7})
@@ -81,7 +81,7 @@ Point2 random_point(Pcg32& random) {
   return {x, random.uniform()};
 }
 
-// The draw's definition, in double precision: the sampler's is in float.
+// Draws by the definition in double precision; the sampler uses float.
 DrawnDirection defined_draw(const TabulatedSampler& sampler, Vec3 wo, Point2 u) {
   const SamplerTables t = sampler.tables();
   SamplerView view;
@@ -124,7 +124,7 @@ class TabulatedSamplerTest : public ::testing::TestWithParam<ModelCase> {
 };
 
 TEST_P(TabulatedSamplerTest, DrawsByItsDensity) {
-  // of all the draws of the suite, one in a hundred may be worse than this
+  // Among all draws of the suite, one in a hundred may be worse than this.
   const int tests = static_cast<int>(std::size(kModels) * views(false).size());
   for (const Vec3 wo : wos) {
     const DrawTest test = test_draws(sampler, wo, 20'000, 3);
@@ -133,7 +133,7 @@ TEST_P(TabulatedSamplerTest, DrawsByItsDensity) {
   }
 }
 
-// The solid angle that a small square of u becomes, times the density, is the square's area.
+// A small square of u becomes a solid angle; times the density, this is the square's area.
 TEST_P(TabulatedSamplerTest, JacobianOfTheDrawIsTheDensity) {
   Pcg32 random(4);
   int at_borders = 0, count = 0;
@@ -178,7 +178,7 @@ TEST_P(TabulatedSamplerTest, DrawsInFloatWhatIsDefined) {
   EXPECT_LE(at_borders, count / 200);
 }
 
-// Nothing is wasted, and the weights have their mean and a bound, at grazing wo too.
+// No draw is wasted. Weights have their mean and a bound, also at grazing wo.
 TEST_P(TabulatedSamplerTest, WeightsAreBoundedWithTheAlbedoAsTheirMean) {
   std::vector<double> f(brdf.channels());
   Pcg32 random(6);
@@ -227,7 +227,7 @@ TEST_P(TabulatedSamplerTest, ManyAtOnceAreWhatOneIs) {
       const double expected = sampler.pdf(wi, wo);
       other_pdfs += std::abs(pdf[i] - expected) > 3e-3 * expected;
     }
-    // those at borders of cells
+    // These draws lie at borders of cells.
     EXPECT_LE(other_draws, count / 100);
     EXPECT_LE(other_pdfs, count / 100);
   }
@@ -239,7 +239,7 @@ TEST_P(TabulatedSamplerTest, TurnsWithTheMaterial) {
   const double angle = 1.1, c = std::cos(angle), s = std::sin(angle);
   const auto turned = [&](Vec3 w) { return Vec3{c * w.x - s * w.y, s * w.x + c * w.y, w.z}; };
   for (const Vec3 wo : wos) {
-    if (wo.z == 1) continue;  // which azimuth the normal has is arbitrary
+    if (wo.z == 1) continue;  // the normal's azimuth is arbitrary
     for (int i = 0; i < 50; ++i) {
       const Point2 u = random_point(random);
       const DrawnDirection here = sampler.sample_wi(wo, u), there = sampler.sample_wi(turned(wo), u);
@@ -272,7 +272,7 @@ TEST(TabulatedSampler, ServesAnalyticBrdfsOfAnyWidth) {
   }
 }
 
-// As fits leave it where nothing was measured: what is reflected takes another shape within the last degrees.
+// Fits are like this where nothing was measured: the reflected light changes its shape within the last degrees.
 TEST(TabulatedSampler, FollowsALobeThatRisesAtTheHorizon) {
   const std::vector<std::string> options{"q=32,rational:0.3", "s=30"};
   const ModelSpec spec = parse_model_spec("q(h) + s(wi+0.5wo) s(0.5wi+wo)", options, true);
@@ -293,7 +293,7 @@ TEST(TabulatedSampler, FollowsALobeThatRisesAtTheHorizon) {
   const TabulatedSampler sampler(brdf);
   std::vector<double> f(1);
   Pcg32 random(10);
-  // largest at 87.5 degrees: 1.08; with rings of wo evenly along tan(theta / 2) 1.47
+  // The largest value is 1.08, at 87.5 degrees. It was 1.47 with rings of wo evenly spaced in tan(theta / 2).
   for (const double theta_deg : {80.0, 83.0, 85.0, 86.0, 87.0, 87.5}) {
     const Vec3 wo = spherical_direction(radians(theta_deg), 0.3);
     double sum = 0, squares = 0;
@@ -336,8 +336,8 @@ TEST(TabulatedSampler, TellsDensitiesOfMirrorDirectionsAtAnyView) {
   }
 }
 
-// For unit vectors densities are never negative and directions have length 1, whatever stands in place of u, and
-// what is no number stays none; of vectors that are no directions nothing is said but that they come back.
+// For unit vectors, densities are never negative and directions have length 1, whatever u is, and not-a-number stays
+// not-a-number. For other vectors the functions only have to return.
 TEST(TabulatedSampler, SurvivesAnythingInPlaceOfDirections) {
   const auto sane = [](double pdf, std::initializer_list<Vec3> directions) {
     const bool units =

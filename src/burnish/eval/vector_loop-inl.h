@@ -1,5 +1,4 @@
-// Per-target include: the loop over spans that the kernels share, so that a benchmark's plainest kernel runs
-// through the same one.
+// Per-target include: the loop over spans that the kernels share. A benchmark's plainest kernel uses the same loop.
 #if defined(BURNISH_EVAL_VECTOR_LOOP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_EVAL_VECTOR_LOOP_INL_H_
 #undef BURNISH_EVAL_VECTOR_LOOP_INL_H_
@@ -36,8 +35,8 @@ HWY_NOINLINE void rest_through_buffers(const float* const (&from)[kInputs], std:
   }
 }
 
-/// out[i] = body(from[0][i], from[1][i], …), a vector at a time, kUnroll vectors a turn: all loads, then all
-/// stores. Body takes const Lane (&)[kInputs] and holds its constants by value: a copy of them is kept in
+/// Computes out[i] = body(from[0][i], from[1][i], …), a vector at a time, with kUnroll vectors a turn: all loads,
+/// then all stores. Body takes const Lane (&)[kInputs] and holds its constants by value: a copy of it is kept in
 /// registers.
 template <int kUnroll, int kInputs, class Body>
 HWY_INLINE void for_each_vector(const float* const (&from)[kInputs], std::size_t count, float* out,

@@ -44,8 +44,8 @@ PreparedView prepare(const ReflectedLight& view, bool isotropic) {
 }
 
 // Returns the logarithm of the relative second moment of the weights for cells of one map. It is the mean over the
-// views, so that none of them dominates. A cell's mass is the root of the mean square of what it reflects: of all
-// masses, this makes the moment least.
+// views, so that no single view dominates. A cell's mass is the root of the mean square of its reflected light, which
+// minimizes the moment.
 double log_second_moment(const std::vector<PreparedView>& views, const VisibleHalfMap& map, bool isotropic,
                          int rows, int columns, std::vector<double>& squares) {
   SamplerView view;
@@ -95,7 +95,7 @@ VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bo
   double least = std::numeric_limits<double>::infinity();
   std::array<double, 4> at{};  // log sharpness, share, log aspect, turn
 
-  // Keeps parameters that are better than the best so far.
+  // Keeps parameters if they are better than the best so far.
   const auto consider = [&](std::array<double, 4> p) {
     p[0] = std::clamp(p[0], std::log(1e-7), std::log(1.0));
     p[1] = std::clamp(p[1], 0.0, 0.98);
@@ -119,7 +119,7 @@ VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bo
           consider({round[0] - narrower, round[1], aspect, k * kPi / 4});
   }
 
-  // Then one parameter after another is moved, as long as that helps, by ever smaller steps.
+  // Finally each parameter is moved in turn, as long as that helps, by ever smaller steps.
   std::array<double, 4> step{0.6, 0.1, 0.25, kPi / 12};
   for (int pass = 0; pass < 9; ++pass) {
     for (std::size_t k = 0; k < (isotropic ? 2 : 4); ++k)

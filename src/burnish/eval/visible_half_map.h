@@ -6,13 +6,14 @@
 
 namespace burnish {
 
-/// A map of the half vectors that are visible from some wo onto a rectangle, in which the cells of a sampling
-/// table stand. With m = tan^2(theta_h / 2), along every azimuth
-///   G(m) = share (1 + K) m / (m + K) + (1 - share) m,
-/// a highlight of width sqrt(K) beside the whole hemisphere, and the rectangle's v = G(m) / G(largest visible m). Its
-/// u is the azimuth in the metric |x'| + |y'| of the vector (x', y') = M (cos phi, sin phi), which needs no
-/// trigonometry; where M stretches, K = sharpness / |(x', y')|^2. For isotropic BRDFs the azimuth is that from wo,
-/// and half the circle is enough. Both directions of the map are closed forms (eval/visible_half-inl.h).
+/// Maps the half vectors that are visible from some wo to a rectangle, which holds the cells of a sampling table.
+/// With m = tan^2(theta_h / 2), along every azimuth
+///   G(m) = share (1 + K) m / (m + K) + (1 - share) m.
+/// The first term is a highlight of width sqrt(K), the second the whole hemisphere. The rectangle's v is G(m) /
+/// G(largest visible m). Its u is the azimuth in the metric |x'| + |y'| of the vector (x', y') = M (cos phi, sin
+/// phi), which needs no trigonometry. If M stretches, K = sharpness / |(x', y')|^2. For isotropic BRDFs the azimuth
+/// is counted from that of wo, and half the circle is enough. Both directions of the map are closed forms
+/// (eval/visible_half-inl.h).
 struct VisibleHalfMap {
   double sharpness = 0.01, share = 0.5;
   double xx = 1, xy = 0, yy = 1;  ///< M, symmetric, determinant 1
@@ -27,9 +28,9 @@ struct ReflectedLight {
   std::vector<double> size;  ///< reflected_size at the rule's directions
 };
 
-/// The map for which cells of `rows` by `columns`, with the masses that serve them best, give weights f cos / pdf of
-/// the least relative second moment, by the mean of its logarithms over the views; found by search: deterministic,
-/// the same on every machine to rounding.
+/// Finds the map whose cells, `rows` by `columns` of them with optimal masses, give weights f cos / pdf the least
+/// relative second moment, as the mean of its logarithms over the views. The search is deterministic, and the same on
+/// every machine to rounding.
 VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bool isotropic, int rows,
                                     int columns);
 

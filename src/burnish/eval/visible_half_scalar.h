@@ -19,7 +19,7 @@ struct SamplerView : VisibleHalfMap {
   const std::uint16_t *row_edges = nullptr, *cell_edges = nullptr;
 };
 
-/// The formulas for double: what draws in float are tested against, and densities.
+/// The formulas in double, for densities and as the reference for draws in float.
 namespace scalar {
 
 using std::abs;
@@ -27,7 +27,7 @@ using std::max;
 using std::min;
 using std::sqrt;
 
-// Comparisons as bits: which way they go is as good as random, and branches would be mispredicted.
+// Comparisons are computed as bits: their results are nearly random, and branches would be mispredicted.
 typedef double DoubleLanes __attribute__((vector_size(16)));
 typedef std::int64_t MaskLanes __attribute__((vector_size(16)));
 
@@ -52,8 +52,8 @@ inline double to_real(std::int32_t i) noexcept {
 inline std::int32_t next_around(std::int32_t i, int last) noexcept {
   return i < last ? i + 1 : 0;
 }
-// Counts the edges up to the target. In float, as all draws do; what rounding puts into the neighbouring cell lands on
-// its border.
+// Counts the edges up to the target. It works in float, as all draws do; a target that rounding moves to the
+// neighbouring cell lands on its border.
 template <int kSlices>
 inline __attribute__((always_inline)) std::int32_t search(const std::uint16_t* table,
                                                           const std::int32_t (&start)[kSlices],
@@ -66,7 +66,7 @@ inline __attribute__((always_inline)) std::int32_t search(const std::uint16_t* t
     share[s] = static_cast<float>(weight[s]);
   }
   const auto limit = static_cast<float>(target);
-  const int eights = count & ~7;  // all of them: vectors without a rest
+  const int eights = count & ~7;  // all of them, so that vectors leave no rest
   std::int32_t below = 0;
   for (int i = 0; i < eights; ++i) {
     float edge = share[0] * static_cast<float>(row[0][i]);

@@ -1,6 +1,6 @@
-// Per-target include: one lobe of a volume over theta_h, theta_d and phi_d times a line over theta_h, the form that
-// a fit of two fetches has, in one go: of one pair with lanes across angles, of many with a pair a lane. Both by the
-// same formulas in the same order: the bits are the same.
+// Per-target include: one lobe of a volume over theta_h, theta_d and phi_d times a line over theta_h, the form of
+// fits with two fetches, in one pass. One pair uses lanes across angles; many pairs use a lane a pair. Both use the
+// same formulas in the same order, so the bits are the same.
 #if defined(BURNISH_EVAL_VOLUME_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_EVAL_VOLUME_LANES_INL_H_
 #undef BURNISH_EVAL_VOLUME_LANES_INL_H_
@@ -135,11 +135,11 @@ HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, con
 
 #endif  // HWY_TARGET != HWY_SCALAR
 
-/// Many pairs, a vector of them in every turn: those whose places were found two turns before are looked up, while
-/// places, tangents and lengths of later ones are found. Steps that wait for roots or divisions come a turn after
-/// these began, so that waiting instructions do not fill the processor's queues; places have two turns, because
-/// single numbers are loaded from vectors that were stored. Nothing is called in the loop: all registers would go to
-/// memory.
+/// Evaluates many pairs, a vector of them in every turn. Each turn looks up the pairs whose places were found two
+/// turns before, and finds places, tangents and lengths of later pairs. Steps that need roots or divisions run one
+/// turn after these began, so that waiting instructions do not fill the processor's queues. Places have two turns,
+/// because single numbers are loaded from vectors that were stored. No function is called in the loop: otherwise all
+/// registers would go to memory.
 struct VolumePipeline {
   static constexpr std::size_t kAhead = 2 * kLanes, kRing = 4 * kLanes;  // pairs
   static constexpr std::size_t kFetched = FactoredPlan::kMaxBlock;       // so far ahead memory is asked for
@@ -148,7 +148,7 @@ struct VolumePipeline {
   alignas(64) float x[kRing], y[kRing], z[kRing], along[kRing];
   alignas(64) float above[kRing];  // > 0: both above the horizon; not-a-number: no directions
 
-  /// Lengths and what polar angles take beside them.
+  /// Lengths, and the other values that polar angles need.
   struct Lengths {
     Lane sum, half, difference, azimuth, sum_z, sine, d_z, above;
   };
