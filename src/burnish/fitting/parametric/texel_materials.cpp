@@ -101,8 +101,8 @@ class Fitter {
     typical_ = nearest(typical);
   }
 
-  /// Finds the material of one texel's weights. Of two equally near materials, the one more like the typical one is
-  /// taken.
+  /// Finds the material of one texel's weights. If two materials are equally near, the one more like the typical one
+  /// is taken.
   Found nearest(const TexelWeights& weights) const {
     std::array<double, 3> square{};
     for (std::size_t k = 0; k < lobes_.size(); ++k)

@@ -42,8 +42,8 @@ Axis axis_along(const Projection& projection, std::size_t table, const TableLayo
   return {};
 }
 
-/// Returns the projection that every volume has along some axis. Of several, the one whose order leaves the fewest
-/// nodes at one coordinate, which makes the narrowest band.
+/// Returns the projection that every volume has along some axis. If there are several, it is the one whose order
+/// leaves the fewest nodes at one coordinate, which makes the narrowest band.
 std::optional<Projection> key_projection(std::span<const LobeLanes::NumberedTable> tables,
                                          const Lookups& lookups) {
   std::optional<Projection> best;

@@ -143,7 +143,7 @@ double relative_error(const OpenPbr& material, const DirectionPair& pair, std::s
   return error;
 }
 
-// What `share` of the errors do not exceed, and what the test says of them.
+// Sorted errors: at(share) is the error that this share of them does not exceed.
 class Errors {
  public:
   explicit Errors(std::vector<double> errors) : sorted_(std::move(errors)) { std::ranges::sort(sorted_); }

@@ -22,8 +22,8 @@ class GlRendererTest : public testing::Test {
   void SetUp() override {
     if (!context_->context) GTEST_SKIP() << context_->reason;
   }
-  // How far, in pixels, a vertex may be drawn from its place: GPUs have eight bits for where in a pixel it is. Mesa's
-  // renderers interpolate from the places themselves.
+  // The largest distance, in pixels, of a drawn vertex from its place. GPUs have eight bits for the position within a
+  // pixel. Mesa's renderers interpolate from the places themselves.
   static double vertex_error() { return context_->context->in_software() ? 0 : 0x1p-8; }
 
  private:

@@ -101,7 +101,8 @@ TEST_F(GlSpatial, ShaderAgreesWithTheEvaluator) {
   }
 }
 
-// What blocks keep of smooth maps: of 8 bits of weights half a step or two, of normals a step of 127.
+// Blocks store smooth maps with small errors: half a step or two of 8 bits for weights, and one step of 127 for
+// normals.
 TEST_F(GlSpatial, ReadsMapsInBlocks) {
   const SpatialBrdf surface = smooth_surface(64);
   const SpatialEvaluator evaluator(surface);

@@ -61,7 +61,7 @@ TEST(EnvironmentLight, EverySamplerApproachesTheMeanWithItsVariance) {
   }
 }
 
-// Of one sample, the sum over the picture.
+// The sum over the picture of the variance of one sample.
 double variance_of(const Image& variance) {
   return std::accumulate(variance.pixels.begin(), variance.pixels.end(), 0.0);
 }

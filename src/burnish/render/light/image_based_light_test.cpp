@@ -55,7 +55,7 @@ Image truth_of(const FactoredBrdf& brdf) {
   return moments_in_environment(brdf, CosineSampler{}, {}, kLamps, {.size = kSize, .samples = 1024}).mean;
 }
 
-// How near the lit sphere is to `truth`, in decibels.
+// Returns the agreement of the lit sphere with `truth`, in decibels.
 double agreement(const FactoredBrdf& brdf, int harmonics, const Image& truth) {
   const LitSphere sphere{truth, {}};
   const double exposure = sphere_exposure({&sphere, 1});

@@ -68,7 +68,8 @@ INSTANTIATE_TEST_SUITE_P(All, Shapes, testing::Values("sphere", "teapot", "torus
                            return name;
                          });
 
-// How often each edge between two places is run along; opposite directions cancel.
+// Counts the edges that are not closed: each edge between two places is counted per direction, and opposite
+// directions cancel.
 int open_edges(const Mesh& mesh) {
   using Place = std::array<long, 3>;
   const auto place = [&](std::uint32_t i) {
