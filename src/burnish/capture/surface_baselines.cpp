@@ -32,7 +32,7 @@ std::pair<Table, double> line(const char* name, Warp warp, const Of& of) {
   return {std::move(table), most};
 }
 
-/// A diffuse lobe and a GGX lobe for each channel.
+/// Returns a diffuse lobe and a GGX lobe for each channel.
 FactoredBrdf ggx_lobes(double alpha) {
   const double square = alpha * alpha;
   const auto [d, most_d] = line("d", {WarpKind::power, 0.5}, [&](double z) {
@@ -97,7 +97,7 @@ class Comparison {
     return -10 * std::log10(sum);
   }
 
-  /// PSNR from the mean squares of the held-out pictures, over the sampled texels.
+  /// Returns the PSNR from the mean squares of the held-out pictures, over the sampled texels.
   std::optional<double> score(const FactoredBrdf& lobes, const TexelFits& fits) const {
     const TexelSolver solver(lobes, capture_.form(), fit_.report.exposure);
     return psnr_of(solver.errors(samples_, fits));
@@ -175,7 +175,7 @@ class Comparison {
     return std::log(std::max(x, 0.0) + kLogFloor);
   }
 
-  /// PSNR of the principal components; none if texels have no pictures in common.
+  /// Returns the PSNR of the principal components; none if texels have no pictures in common.
   std::optional<double> pca(std::size_t components) const {
     if (capture_.form().own_directions) return std::nullopt;
     const auto& pictures = capture_.form().pictures;

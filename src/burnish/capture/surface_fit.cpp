@@ -77,7 +77,7 @@ std::size_t lights_and_views(const CaptureForm& form) {
   return static_cast<std::size_t>(std::ranges::unique(pairs).begin() - pairs.begin());
 }
 
-/// The surface made of all rows.
+/// Returns the surface made of all rows.
 SpatialBrdf surface_of(const FitCheckpoint& done, const CaptureForm& form, bool widened) {
   SurfaceMaps maps;
   for (std::size_t j = 0; j < done.scales.size(); ++j)
@@ -90,7 +90,7 @@ SpatialBrdf surface_of(const FitCheckpoint& done, const CaptureForm& form, bool 
   return widened ? with_widened_lobes(brdf) : std::move(brdf);
 }
 
-/// The whole report except times and resumed parts.
+/// Returns the whole report except times and resumed parts.
 SurfaceReport report_of(const FitCheckpoint& done, const SpatialBrdf& surface, const Capture& capture,
                         NormalsFrom normals) {
   const CaptureForm& form = capture.form();

@@ -98,7 +98,7 @@ SurfaceFit fit_surface(Capture capture, const SurfaceFitOptions& options);
 /// that wait for it have to be ended by the program that started them.
 void help_fit_surface(Capture capture, const SurfaceFitOptions& options);
 
-/// The report as JSON.
+/// Returns the report as JSON.
 std::string report_json(const SurfaceReport& report);
 
 }  // namespace burnish

@@ -47,7 +47,7 @@ constexpr std::size_t kTexelBytes = 4;  // rgb9e5
 constexpr double kCodeRoom = 1.25;      // of a weight's scale over nearly all texels' values
 constexpr double kNearlyAll = 0.999;
 
-/// The model of K lobes z(theta_h) g(theta_h,theta_d,phi_d), each of that many bytes.
+/// Returns the model of K lobes z(theta_h) g(theta_h,theta_d,phi_d), each of that many bytes.
 ModelSpec spec_of_lobes(std::size_t lobes, std::size_t bytes) {
   const double texels = static_cast<double>(bytes / kTexelBytes) - 4;
   const int line = std::clamp(static_cast<int>(kLineShare * texels), 8, 256);
@@ -79,7 +79,7 @@ struct LobeSetting {
   bool clipped;  // true if any fitted pixel is
 
   bool is_coarse(int round) const noexcept { return round + kFullRounds < task.rounds; }
-  /// The bytes of each lobe's tables in a round.
+  /// Returns the bytes of each lobe's tables in a round.
   std::size_t bytes_in(int round) const noexcept {
     const std::size_t all = task.options.lobe_bytes;
     const auto few = static_cast<std::size_t>(kCoarseShare * static_cast<double>(all));
@@ -104,7 +104,7 @@ struct FittedTexels {
   throw Error::in_file(task.options.checkpoint.string(), "lobes and texels of this capture", "others");
 }
 
-/// The normals that texels begin with.
+/// Returns the normals that texels begin with.
 std::vector<float> starting_normals(const LobeSetting& setting, const TexelSamples& samples) {
   const SurfaceTask& task = setting.task;
   if (task.normals != NormalsFrom::estimate)
@@ -191,9 +191,9 @@ void resume_texels(const LobeSetting& setting, std::size_t lobes, LobesCheckpoin
   normals_of_all = std::move(begun.normals_of_all);
 }
 
-/// The trust in pixels in a round. Before the first refinement the lobes are wrong, not the pixels. Where highlights
-/// are clipped, the few unclipped pixels tell how bright lobes are, but look like outliers until lobes are bright. So
-/// large errors alone count against a pixel while lobes have few nodes.
+/// Returns the trust in pixels in a round. Before the first refinement the lobes are wrong, not the pixels. Where
+/// highlights are clipped, the few unclipped pixels tell how bright lobes are, but look like outliers until lobes are
+/// bright. So large errors alone count against a pixel while lobes have few nodes.
 PixelTrust trust_in(const LobeSetting& setting, int round) noexcept {
   if (round == 0) return PixelTrust::alike;
   return setting.clipped && setting.is_coarse(round) ? PixelTrust::mild : PixelTrust::as_found;
@@ -273,7 +273,7 @@ FactoredBrdf fitted_lobes(const LobeSetting& setting, std::optional<LobesCheckpo
   return std::move(lobes.brdf);
 }
 
-/// The scale of each lobe's weights: a value that nearly all sampled texels stay below, with some room.
+/// Returns the scale of each lobe's weights: a value that nearly all sampled texels stay below, with some room.
 std::vector<float> scales_of(const std::vector<float>& weights, std::size_t lobes) {
   std::vector<float> scales;
   for (std::size_t j = 0; j < lobes; ++j) {

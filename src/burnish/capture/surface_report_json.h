@@ -8,10 +8,10 @@
 
 namespace burnish {
 
-/// "capture", "flat" or "estimated".
+/// Returns "capture", "flat" or "estimated".
 const char* name_of(NormalsFrom normals) noexcept;
 
-/// The JSON object that report_json writes.
+/// Returns the JSON object that report_json writes.
 nlohmann::ordered_json json_of(const SurfaceReport& report);
 
 }  // namespace burnish

@@ -94,7 +94,7 @@ void store(TexelFits& fits, int width, FitCheckpoint& tile) {
   tile.normals = fits.normals;
 }
 
-/// The number of texels that no fitted picture shows.
+/// Returns the number of texels that no fitted picture shows.
 std::size_t without_data(const TexelSamples& samples, const CaptureForm& form) {
   std::vector<char> shown(samples.size());
   for (std::size_t p = 0; p < samples.pictures; ++p) {
@@ -105,7 +105,7 @@ std::size_t without_data(const TexelSamples& samples, const CaptureForm& form) {
   return static_cast<std::size_t>(std::ranges::count(shown, 0));
 }
 
-/// An empty tile of the same lobes.
+/// Returns an empty tile of the same lobes.
 FitCheckpoint empty_tile(const FitCheckpoint& done) {
   FitCheckpoint tile{.lobes = done.lobes, .scales = done.scales, .codes = {}, .normals = {}, .errors = {}};
   tile.codes.resize(done.codes.size());

@@ -23,7 +23,7 @@ struct SurfaceWeights {
 /// if a picture is damaged that was sound when it was first read.
 SurfaceWeights find_weights(const Capture& capture, const SurfaceTask& task, FitCheckpoint begun);
 
-/// The mean errors of the held-out pictures, or of the fitted ones.
+/// Returns the mean errors of the held-out pictures, or of the fitted ones.
 PictureScore score_of(const std::vector<TexelSolver::PictureError>& errors, const CaptureForm& form,
                       bool held_out);
 

@@ -45,7 +45,7 @@ struct Candidates {
   std::vector<std::size_t> in_bin;  // number of pixels of each theta_h
 };
 
-/// The weight of a pixel in the fit of lobes.
+/// Returns the weight of a pixel in the fit of lobes.
 float trust_in(const KnownTexels& known, std::size_t pixel) noexcept {
   if (known.trust == PixelTrust::alike) return 1;
   const float trust = known.fits.trust[pixel];

@@ -39,7 +39,7 @@ struct NumberedPixels {
         {.samples = samples, .form = form, .exposure = 2, .fits = fits, .lobes = nullptr, .trust = trust},
         texels, 400, 1, stream);
   }
-  /// The number of pixel i of a set, counted as [picture][texel].
+  /// Returns the number of pixel i of a set, counted as [picture][texel].
   static std::size_t number(const TrainingSet& set, std::size_t i) {
     const double red = static_cast<double>(set.values[3 * i]) * set.pairs[i].wi.z;
     return static_cast<std::size_t>(std::lround(red)) - 1;

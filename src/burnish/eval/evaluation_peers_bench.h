@@ -31,7 +31,7 @@ static_assert(Brdf<TabulatedMicrofacets>);
 
 void eval_tabulated(const TabulatedMicrofacets& brdf, const DirectionSpans& directions, std::span<float> f);
 
-/// The network of NeuralBrdf with these weights.
+/// Evaluates the network of NeuralBrdf with these weights.
 void eval_neural(std::span<const float> weights, const DirectionSpans& directions, std::span<float> f);
 
 /// Evaluates an isotropic GGX model.

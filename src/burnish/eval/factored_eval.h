@@ -59,9 +59,10 @@ class FactoredEvaluator {
   /// Evaluates as a Brdf, for renderers that take any BRDF: returns true, and f_r in doubles.
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
-  /// The largest, over the lobes, of the sum over their factors of 2^-24 (8 R + 16 axes (n - 1) (R - 1)). A position
-  /// is off by at most 16 * 2^-24 of an axis of n nodes, and neighbouring entries of a table differ by at most the
-  /// factor R. The bound assumes that every lookup has the worst case, so it is pessimistic for steep tables.
+  /// Returns the largest, over the lobes, of the sum over their factors of 2^-24 (8 R + 16 axes (n - 1) (R - 1)). A
+  /// position is off by at most 16 * 2^-24 of an axis of n nodes, and neighbouring entries of a table differ by at
+  /// most the factor R. The bound assumes that every lookup has the worst case, so it is pessimistic for steep
+  /// tables.
   double rounding_bound() const noexcept;
 
  private:

@@ -42,7 +42,7 @@ const std::vector<DirectionPair>& bench_pairs() {
   return pairs;
 }
 
-// The material of every table here.
+// Returns the material of every table here.
 const Ggx& ggx() {
   static const Ggx brdf{.distribution = {0.2, 0.2}, .f0 = {0.9, 0.6, 0.3}, .kd = {0.05, 0.1, 0.2}};
   return brdf;
@@ -69,7 +69,7 @@ FactoredBrdf smooth_model(const char* expression, const std::vector<std::string>
   return from_log_tables(3, std::move(tables), std::move(lobes), TableFormat::half);
 }
 
-// The mean relative error over the first pairs; `value(i)` gives pair i's three channels.
+// Returns the mean relative error over the first pairs; `value(i)` gives pair i's three channels.
 template <class Value, class Truth>
 double relative_error(const Value& value, const Truth& truth) {
   double error = 0;

@@ -62,7 +62,8 @@ FactoredBrdf random_model(const ModelCase& model) {
                   [&](std::size_t, const TableLayout&, int, int, int) { return -2 * random.uniform(); });
 }
 
-// Random pairs, corners, and some pairs below the horizon. They are more than one block, and not whole blocks.
+// Returns random pairs, corners, and some pairs below the horizon. They are more than one block, and not whole
+// blocks.
 std::vector<DirectionPair> test_pairs() {
   std::vector<DirectionPair> pairs = draw_pairs(997, 3, false);
   for (const DirectionPair& pair : corner_pairs()) pairs.push_back(pair);

@@ -22,15 +22,15 @@ class LobeEvaluator {
 
   std::size_t channels() const noexcept;
   std::size_t lobes() const noexcept;
-  /// FactoredEvaluator's bound of the relative error, for the value of a lobe.
+  /// Returns FactoredEvaluator's bound of the relative error, for the value of a lobe.
   double rounding_bound() const noexcept;
 
   /// f_r of each lobe with its scale, 1/sr, without the cosine, zero below the horizon: channel c of lobe j of pair i
   /// is f[(j * channels() + c) * directions.size() + i].
   void eval(const DirectionSpans& directions, std::span<float> f) const noexcept;
 
-  /// The sum over lobes of weights[kWeightStride * j + c] times the lobe's value in channel c, for one pair of unit
-  /// vectors. The fourth weight of a lobe is read but not used.
+  /// Finds the sum over lobes of weights[kWeightStride * j + c] times the lobe's value in channel c, for one pair of
+  /// unit vectors. The fourth weight of a lobe is read but not used.
   void eval(Vec3 wi, Vec3 wo, std::span<const float> weights, std::span<float> f) const noexcept;
 
  private:

@@ -12,7 +12,7 @@
 namespace burnish {
 namespace {
 
-// A table over the cosine, made once an exponent.
+// Returns a table over the cosine, made once an exponent.
 template <int kEntries>
 const std::vector<float>& table_of(float e) {
   static std::map<float, std::vector<float>> tables;

@@ -80,7 +80,7 @@ HWY_INLINE SplitLane split_bits(Lane c) {
   return {Lane(hn::ConvertTo(D(), n)), Lane(hn::BitCast(D(), hn::Sub(bits, n)))};
 }
 
-// 2^y for y >= kMinPower in units of kOctave.
+// Returns 2^y for y >= kMinPower in units of kOctave.
 HWY_INLINE Lane exp2_of_octaves(Lane y) {
 #if BURNISH_TARGET_IS_AVX3
   constexpr int kFloor = 9;  // of imm8: no scale, towards minus infinity, no exceptions

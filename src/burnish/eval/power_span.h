@@ -28,8 +28,8 @@ void power_span(const PowerCoefficients& coefficients, std::span<const float> co
 void power_span(PowerMethod method, std::span<const float> cosines, std::span<const float> exponents,
                 std::span<float> out);
 
-/// Largest |kernel - definition| for exponents to 1024. It comes from float rounding and, for the Gaussians, from
-/// their short exponential; with one exponent a value the coefficients are rounded too. For quadratic_raw it is
+/// Returns the largest |kernel - definition| for exponents to 1024. It comes from float rounding and, for the Gaussians,
+/// from their short exponential; with one exponent a value the coefficients are rounded too. For quadratic_raw it is
 /// relative to 1 + exponent (1 - c), the size of its terms. The values are measured on dense samples, not proved.
 double power_span_rounding(PowerMethod method, bool exponent_per_value) noexcept;
 
@@ -49,7 +49,7 @@ struct NormalSpans {
 /// vector, ^exponent by material.power. Throws Error for lengths that differ.
 void shade_blinn_phong(const BlinnPhongShading& material, const NormalSpans& normals, std::span<float> out);
 
-/// Names of the compiled instruction sets that this processor has, best first.
+/// Returns the names of the compiled instruction sets that this processor has, best first.
 std::vector<std::string> simd_targets();
 
 /// Limits the kernels to the named one of simd_targets() until the object dies. For tests and benchmarks; not while

@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(Members, PowerSpan,
                          testing::ValuesIn(power_methods().begin(), power_methods().end()),
                          [](const auto& member) { return std::string(member.param.name); });
 
-// The distance from c^e in units of the last place of a float of its size, down to the smallest denormal.
+// Returns the distance from c^e in units of the last place of a float of its size, down to the smallest denormal.
 double ulps_off(float found, float c, double e) {
   const long double power = std::pow(static_cast<long double>(c), static_cast<long double>(e));
   int exponent = 0;

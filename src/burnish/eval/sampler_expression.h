@@ -10,11 +10,11 @@ struct DrawnExpr {
   Expr x, y, z, pdf;
 };
 
-/// TabulatedSampler::sample_wi as expressions. Their inputs are the numbers "wo_x", "wo_y", "wo_z", "u_x" and "u_y",
-/// and the tables' arrays of integers "row_edges" and "cell_edges".
+/// Returns TabulatedSampler::sample_wi as expressions. Their inputs are the numbers "wo_x", "wo_y", "wo_z", "u_x" and
+/// "u_y", and the tables' arrays of integers "row_edges" and "cell_edges".
 DrawnExpr sample_expression(const SamplerTables& tables);
 
-/// TabulatedSampler::pdf as an expression of "wi_x" to "wo_z" and these arrays.
+/// Returns TabulatedSampler::pdf as an expression of "wi_x" to "wo_z" and these arrays.
 Expr pdf_expression(const SamplerTables& tables);
 
 }  // namespace burnish

@@ -19,7 +19,7 @@ class SpatialEvaluator {
 
   std::size_t channels() const noexcept { return lobes_.channels(); }
   const SpatialBrdf& surface() const noexcept { return *surface_; }
-  /// LobeEvaluator::rounding_bound().
+  /// Returns LobeEvaluator::rounding_bound().
   double rounding_bound() const noexcept { return lobes_.rounding_bound(); }
 
   /// The values at a place of the surface that are the same for all lights.

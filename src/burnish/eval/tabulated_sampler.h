@@ -31,7 +31,7 @@ struct SamplerOptions {
   int columns = 16;    ///< cells along its polar angle, a power of two, 8 to 256
 };
 
-/// The sizes that docs/guide/evaluation.md recommends.
+/// Returns the sizes that docs/guide/evaluation.md recommends.
 SamplerOptions default_sampler_options(bool isotropic) noexcept;
 
 /// A sampler's tables, for programs that draw directions themselves (a shader, a tracer that compiles its own code).

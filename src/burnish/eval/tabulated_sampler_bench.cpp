@@ -125,7 +125,7 @@ struct Batch {
     const auto& in = inputs().planes;
     return {out[0], out[1], out[2], in[0], in[1], in[2]};
   }
-  // The error of densities, compared with the scalar form.
+  // Returns the error of densities, compared with the scalar form.
   double error(const TabulatedSampler& sampler) const {
     double sum = 0;
     for (std::size_t i = 0; i < kCount; ++i) {

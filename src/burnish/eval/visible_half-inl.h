@@ -86,7 +86,8 @@ struct Ray {
   }
 
   SAMPLER_INLINE F to_unit(F m) const { return m * (slope + b * m) * end / ((m + K) * total); }
-  /// Inverse of to_unit: the positive root of b end m^2 + p m - q, without cancellation for either sign of p.
+  /// Computes the inverse of to_unit: the positive root of b end m^2 + p m - q, without cancellation for either sign
+  /// of p.
   SAMPLER_INLINE F from_unit(F v) const {
     const F target = v * total, p = slope * end - target, q = target * (K + K), c = (b + b) * end;
     const F sum = abs(p) + sqrt(p * p + c * q);

@@ -19,9 +19,9 @@ namespace {
 // Few directions: sanitized builds are slow.
 constexpr EnergyOptions kCoarse{.theta_count = 10, .phi_count = 12};
 
-/// A model whose tables over wi and wo rise towards the horizon by e^rise, most of it near grazing. Its other tables
-/// fall by e^-fall, with some noise. Its albedo at the normal is `level` in the first channel, and less in the other
-/// channels.
+/// Returns a model whose tables over wi and wo rise towards the horizon by e^rise, most of it near grazing. Its other
+/// tables fall by e^-fall, with some noise. Its albedo at the normal is `level` in the first channel, and less in the
+/// other channels.
 FactoredBrdf steep_model(const char* expression, std::vector<std::string> options, TableFormat format,
                          double rise, double level, double fall = 3) {
   constexpr std::size_t channels = 3;

@@ -221,7 +221,7 @@ std::optional<T> number_of(std::string_view text) {
   return error == std::errc() && stop == end ? std::optional(number) : std::nullopt;
 }
 
-// "2700", "16K", "1.5 MB" in bytes, rounded to a whole number; K and M count as 1024s.
+// Reads "2700", "16K", "1.5 MB" in bytes, rounded to a whole number; K and M count as 1024s.
 std::optional<std::uint64_t> bytes_of_text(std::string_view text) {
   const std::size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
   const std::optional<double> number = number_of<double>(text.substr(0, digits));

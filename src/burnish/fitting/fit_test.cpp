@@ -67,7 +67,7 @@ PatchTable patch_table() {
   return table;
 }
 
-// A network with the value exp(0.3) - 1 everywhere: the biases of the outputs are the last weights.
+// Returns a network with the value exp(0.3) - 1 everywhere: the biases of the outputs are the last weights.
 NeuralBrdf neural() {
   std::vector<float> weights(NeuralBrdf::kWeights);
   std::fill(weights.end() - NeuralBrdf::kOutputs, weights.end(), 0.3f);
@@ -79,7 +79,7 @@ FactoredBrdf factored() {
   return {3, {p}, {{{0.1, 0.2, 0.3}, {{.table = 0, .projection = kProjectHalf}}}}};
 }
 
-// One source of every kind.
+// Returns one source of every kind.
 std::vector<Source> every_source() {
   RglOptions rgl;
   rgl.theta_i_count = 4;

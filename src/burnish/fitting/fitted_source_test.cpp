@@ -16,7 +16,7 @@ Source glossy() {
   return {"glossy", parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5/0.3/0.1,kd=0.2"), {}};
 }
 
-/// Grey samples of a glossy surface.
+/// Returns grey samples of a glossy surface.
 Source glossy_samples(std::size_t count) {
   const Samples drawn =
       measure(parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5,kd=0.2"), {.count = count, .seed = 3});

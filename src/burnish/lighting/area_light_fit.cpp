@@ -185,7 +185,7 @@ class TableFit {
     return a;
   }
 
-  // The lobes of a view along the normal, in a frame whose x lies at azimuth phi.
+  // Returns the lobes of a view along the normal, in a frame whose x lies at azimuth phi.
   static NodeLobes turned(NodeLobes node, double phi) {
     const double c = std::cos(phi), s = std::sin(phi);
     for (NodeLobes::Lobe& lobe : node.lobes) {

@@ -19,8 +19,8 @@ namespace {
 
 constexpr int kTextureNumber = 8;
 
-// The number of texture rows of a lobe, for its matrix and height. The plain cosine's height comes first in the
-// texture.
+// Returns the number of texture rows of a lobe, for its matrix and height. The plain cosine's height comes first in
+// the texture.
 int rows_a_lobe(const AreaLightTable& table) noexcept {
   return table.views == AreaLightViews::line ? 3 : 4;
 }

@@ -65,14 +65,14 @@ struct ShadedLobes {
 /// Interpolates linearly between nodes, for a unit vector wo of the local frame above the horizon.
 ShadedLobes shaded_lobes(const AreaLightTable& table, Vec3 wo) noexcept;
 
-/// The table's f_r cos(theta_i), 1/sr; zero below the horizon.
+/// Returns the table's f_r cos(theta_i), 1/sr; zero below the horizon.
 Rgb reflected_density(const AreaLightTable& table, Vec3 wi, Vec3 wo) noexcept;
 
-/// The radiance reflected towards wo from light of radiance 1 from all directions.
+/// Returns the radiance reflected towards wo from light of radiance 1 from all directions.
 Rgb albedo(const AreaLightTable& table, Vec3 wo) noexcept;
 
-/// The radiance reflected towards wo from a polygon of radiance 1 that shines to both sides. Corners are in order,
-/// relative to the lit point, in its local frame. Zero if wo is not above the horizon.
+/// Returns the radiance reflected towards wo from a polygon of radiance 1 that shines to both sides. Corners are in
+/// order, relative to the lit point, in its local frame. Zero if wo is not above the horizon.
 Rgb reflected(const AreaLightTable& table, std::span<const Vec3> polygon, Vec3 wo);
 
 }  // namespace burnish

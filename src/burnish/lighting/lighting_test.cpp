@@ -37,7 +37,7 @@ AreaLightTable small_fit(const AnalyticBrdf& brdf, std::size_t lobes = 2) {
   return fit_area_lights(brdf, {.lobes = lobes, .thetas = 9, .polars = 5, .quarter = 3, .iterations = 15});
 }
 
-// The mean over stratified directions of the sphere, times its solid angle.
+// Returns the mean over stratified directions of the sphere, times its solid angle.
 template <class Value>
 double over_sphere(int side, const Value& value) {
   Pcg32 random(1);
@@ -224,7 +224,7 @@ TEST(RectangleFormula, AngleOverSineIsWithinItsBound) {
   }
 }
 
-// A small table without a fit, whose values vary with the view.
+// Returns a small table without a fit, whose values vary with the view.
 AreaLightTable made_table(AreaLightViews views) {
   AreaLightTable table{.views = views,
                        .thetas = 6,

@@ -35,12 +35,12 @@ inline MirroredView mirrored_view(Vec3 wo, AreaLightViews views) noexcept {
   return {{wo.z * away.x, wo.z * away.y, sine}, {-side * away.y, side * away.x, 0}, mirror(wo)};
 }
 
-/// Position in [0, 1] along a table's polar angles.
+/// Returns the position in [0, 1] along a table's polar angles.
 inline double theta_position(Vec3 wo) noexcept {
   return std::hypot(wo.x, wo.y) / (1 + wo.z);
 }
 
-/// Position in [0, 1] along a table's azimuths.
+/// Returns the position in [0, 1] along a table's azimuths.
 inline double azimuth_position(AreaLightViews views, Vec3 wo) noexcept {
   const double size = std::abs(wo.x) + std::abs(wo.y);
   if (views == AreaLightViews::line || size < 1e-12) return 0;

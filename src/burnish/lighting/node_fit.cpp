@@ -190,7 +190,7 @@ Eigen::VectorXd residuals(const NodeTarget& target, const Eigen::VectorXd& value
   return r;
 }
 
-// The weight that holds each parameter near the neighbour's, relative to the options' weight.
+// Returns the weight that holds each parameter near the neighbour's, relative to the options' weight.
 Eigen::VectorXd stiffness(const NodeLobes& near, const NodeTarget& target, const Layout& layout) {
   Eigen::VectorXd weight = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.size()));
   double albedo = 0;

@@ -70,7 +70,7 @@ std::vector<LitEdge<V>> edges_above(const std::vector<LitEdge<V>>& edges) {
   return kept;
 }
 
-/// The plain cosine's share of a polygon above the horizon, given by its edges.
+/// Returns the plain cosine's share of a polygon above the horizon, given by its edges.
 template <class V>
 auto share_of_edges(const std::vector<LitEdge<V>>& edges) {
   using T = decltype(V::x);

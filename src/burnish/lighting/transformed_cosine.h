@@ -22,9 +22,9 @@ struct TransformedCosine {
             b[6] * w.x + b[7] * w.y + b[8] * w.z};
   }
   double determinant() const noexcept;
-  /// The density per solid angle at the unit vector w, 1/sr; its integral over the sphere is 1.
+  /// Returns the density per solid angle at the unit vector w, 1/sr; its integral over the sphere is 1.
   double density(Vec3 w) const noexcept;
-  /// The integral of the density over the upper hemisphere, in (0, 1].
+  /// Returns the integral of the density over the upper hemisphere, in (0, 1].
   double share_above() const noexcept;
 };
 
@@ -36,7 +36,7 @@ std::vector<Vec3> clipped_above(std::span<const Vec3> polygon);
 /// side is seen. Edges are exact.
 double cosine_share(std::span<const Vec3> polygon) noexcept;
 
-/// The integral of the lobe's density over the directions above the horizon to a polygon, in [0, 1].
+/// Returns the integral of the lobe's density over the directions above the horizon to a polygon, in [0, 1].
 double lobe_share(const TransformedCosine& lobe, std::span<const Vec3> polygon);
 
 }  // namespace burnish

@@ -104,7 +104,7 @@ class BtfFile::Head {
     }
     return found;
   }
-  /// Polar angle and azimuth, radians.
+  /// Reads a direction as polar angle and azimuth, radians.
   Vec3 direction(const char* what) {
     const auto theta = static_cast<double>(number<float>(what)),
                phi = static_cast<double>(number<float>(what));

@@ -36,7 +36,7 @@ class BtfFile {
   const std::vector<Vec3>& lights() const noexcept { return lights_; }  ///< unit vectors
   const std::vector<Vec3>& views() const noexcept { return views_; }    ///< unit vectors
   std::size_t pictures() const noexcept { return lights_.size() * views_.size(); }
-  /// A hash of the bytes before the texels and of the number of bytes after them.
+  /// Returns a hash of the bytes before the texels and of the number of bytes after them.
   std::uint64_t fingerprint() const noexcept { return fingerprint_; }
   /// Bytes of a row of texels in a Rows.
   std::size_t row_bytes() const noexcept;
@@ -44,8 +44,8 @@ class BtfFile {
   /// Rows [first, first + count) of all pictures, as factors.
   class Rows {
    public:
-    /// Linear values of picture `light + lights * view`, three channels. They have the same bits whatever rows were
-    /// read.
+    /// Returns the linear values of picture `light + lights * view`, three channels. They have the same bits whatever
+    /// rows were read.
     Image picture(std::size_t number) const;
 
    private:

@@ -28,7 +28,7 @@ struct Written {
   Written(const std::string& name, const BtfContent& content) : Written(name, btf_bytes(content)) {}
 };
 
-/// The colours of a texel, computed in double as in the owners' undecorrelate.m.
+/// Returns the colours of a texel, computed in double as in the owners' undecorrelate.m.
 std::array<double, 3> colour(const BtfContent& content, std::size_t picture, std::size_t texel) {
   constexpr double kEps = 1e-5;
   double y = content.product(0, picture, texel), u = content.product(1, picture, texel),

@@ -23,7 +23,7 @@ struct Station {
   bool is_direction = true;
   Vec3 at{0, 0, 1};
 
-  /// The unit vector towards it from a point of the surface.
+  /// Returns the unit vector towards it from a point of the surface.
   Vec3 seen_from(Vec3 point) const noexcept { return is_direction ? at : normalize(at - point); }
 
   friend bool operator==(const Station&, const Station&) = default;
@@ -58,7 +58,7 @@ struct CaptureForm {
   /// Texels have directions of their own, which CaptureRows stores; stations are not used.
   bool own_directions = false;
 
-  /// The middle of texel (x, y).
+  /// Returns the middle of texel (x, y).
   Vec3 point(int x, int y) const noexcept {
     return {((x + 0.5) / width - 0.5) * size_x, (0.5 - (y + 0.5) / height) * size_y, 0};
   }
@@ -117,7 +117,7 @@ struct CaptureRows {
   }
 };
 
-/// A hash of bytes that continues from the hash `before` of the bytes before them.
+/// Returns a hash of bytes that continues from the hash `before` of the bytes before them.
 constexpr std::uint64_t hash_of(std::string_view bytes,
                                 std::uint64_t before = 0xcbf29ce484222325) noexcept {  // FNV-1a
   for (const char c : bytes) before = (before ^ static_cast<unsigned char>(c)) * 0x100000001b3;
@@ -153,23 +153,23 @@ class Capture {
 
   /// Every picture of the form exists and can be read.
   const CaptureForm& form() const noexcept { return form_; }
-  /// The file that holds the form: capture.json, the BTF, or the samples.
+  /// Returns the file that holds the form: capture.json, the BTF, or the samples.
   std::filesystem::path form_file() const;
-  /// The path of a picture or of the normals.
+  /// Returns the path of a picture or of the normals.
   std::filesystem::path file(const std::string& name) const { return path_ / name; }
 
   struct LeftOut {
     std::string file, why;
   };
   const std::vector<LeftOut>& left_out() const noexcept { return left_out_; }
-  /// One sentence if colour chunks of pictures contradict `transfer`; otherwise empty.
+  /// Returns one sentence if colour chunks of pictures contradict `transfer`; otherwise empty.
   const std::string& disagreement() const noexcept { return disagreement_; }
-  /// A hash that stays the same for the same capture. A folder's covers the bytes of capture.json, size and last
-  /// write time of every picture, mask and the normals, and the pictures left out. A BTF's covers its head, size and
-  /// last write time; that of samples covers all bytes.
+  /// Returns a hash that stays the same for the same capture. A folder's covers the bytes of capture.json, size and
+  /// last write time of every picture, mask and the normals, and the pictures left out. A BTF's covers its head, size
+  /// and last write time; that of samples covers all bytes.
   std::uint64_t fingerprint() const noexcept { return fingerprint_; }
 
-  /// The number of rows, at least one, whose tile of all pictures fits in so many bytes.
+  /// Returns the number of rows, at least one, whose tile of all pictures fits in so many bytes.
   int rows_within(std::size_t bytes) const noexcept;
 
   /// Rows [first, first + count) of every picture, which are read in parallel. A picture that turns out damaged is
@@ -182,8 +182,8 @@ class Capture {
   /// Takes pictures out, and throws Error, as the constructor does.
   void leave_out(const std::vector<LeftOut>& damaged);
 
-  /// The normals of the form, x and y a texel, [row][x][2]; empty if it names none. Throws Error if the picture is
-  /// damaged or has vectors that are not unit vectors above the surface (three channels, to 2 %).
+  /// Returns the normals of the form, x and y a texel, [row][x][2]; empty if it names none. Throws Error if the
+  /// picture is damaged or has vectors that are not unit vectors above the surface (three channels, to 2 %).
   std::vector<float> normals() const;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace burnish {
 
-/// Size and last write time of a file, or "missing". The text changes when the file is replaced.
+/// Returns the size and last write time of a file, or "missing". The text changes when the file is replaced.
 inline std::string file_stamp(const std::filesystem::path& path) {
   std::error_code no_size, no_time;
   const std::uintmax_t size = std::filesystem::file_size(path, no_size);

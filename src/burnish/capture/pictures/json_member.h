@@ -72,7 +72,7 @@ class JsonMember {
     if (!json_->is_string()) fail("a text");
     return json_->get<std::string>();
   }
-  /// The name of a file within the folder.
+  /// Returns the name of a file within the folder.
   std::string file() const {
     std::string name = text();
     const std::filesystem::path path(name);
@@ -89,7 +89,7 @@ class JsonMember {
   bool is_list() const { return json_->is_array(); }
 
  private:
-  // The text for one expected number, or for several.
+  // Returns the text for one expected number, or for several.
   template <class T>
   static std::string range(const char* of_one, const char* of_several, T least, T most) {
     return least == most ? fmt::format("{}{}", of_one, least)
@@ -115,7 +115,7 @@ inline Json parse_json(const FileBytes& file) {
   return json;
 }
 
-/// {"direction": [x, y, z]}, a unit vector above the surface, or {"position": [x, y, z]}, a point above it.
+/// Reads {"direction": [x, y, z]}, a unit vector above the surface, or {"position": [x, y, z]}, a point above it.
 Station parse_station(const JsonMember& member);
 
 }  // namespace burnish

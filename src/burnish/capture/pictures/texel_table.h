@@ -26,7 +26,7 @@ class TexelTable {
   int height() const noexcept { return height_; }
   std::size_t pictures() const noexcept { return fitted_ + held_out_; }
   std::size_t fitted_pictures() const noexcept { return fitted_; }
-  /// A hash of the file's bytes.
+  /// Returns a hash of the file's bytes.
   std::uint64_t fingerprint() const noexcept { return fingerprint_; }
 
   /// Rows [first, first + count) of all pictures.

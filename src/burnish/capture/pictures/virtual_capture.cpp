@@ -34,7 +34,7 @@ double normal_deviate(Pcg32& random) noexcept {  // by Box and Muller
   return std::sqrt(-2 * std::log(u)) * std::cos(kTwoPi * v);
 }
 
-/// Noise with values in about [-1, 1], cubic between nodes that repeat.
+/// Returns noise with values in about [-1, 1], cubic between nodes that repeat.
 std::vector<float> noise_values(const NoiseMap& map, int width, int height) {
   std::vector<float> values(place(width, 0, height));
   for (int octave = 0; octave < kOctaves; ++octave) {
@@ -145,7 +145,7 @@ std::vector<float> parse_heights(const JsonMember& member, const SurfaceScene& s
   return heights;
 }
 
-/// The heights as triangles, with one vertex at each texel's middle.
+/// Returns the heights as triangles, with one vertex at each texel's middle.
 MeshPart mesh_of(const SurfaceScene& scene, const CaptureForm& form) {
   MeshPart part;
   for (int y = 0; y < scene.height; ++y)

@@ -40,7 +40,7 @@ struct SurfaceScene {
 /// scene's folder. Throws Error with file and member.
 SurfaceScene parse_surface_scene(const FileBytes& file, const std::filesystem::path& folder);
 
-/// The normal of a texel, from differences of its neighbours' heights.
+/// Returns the normal of a texel, from differences of its neighbours' heights.
 Vec3 scene_normal(const SurfaceScene& scene, int x, int y) noexcept;
 
 /// Returns f cos(theta_i) of a texel, a value a channel, without shadows, noise and clipping: the sum of the

@@ -19,7 +19,7 @@ struct FitStart {
       {};  ///< the round to resume; none: no round is done. Only of step `lobes`.
 };
 
-/// The message's bytes: the step's name and, for lobes, the checkpoint.
+/// Returns the message's bytes: the step's name and, for lobes, the checkpoint.
 std::string format_start(const FitStart& start);
 /// Throws Error, which names what was found, for other bytes, and as parse_lobes_checkpoint does.
 FitStart parse_start(const FileBytes& message);

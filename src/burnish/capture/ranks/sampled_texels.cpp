@@ -40,7 +40,7 @@ SampledTexels empty_sample(const CaptureForm& form, std::size_t most_values, std
   return found;
 }
 
-/// The place of the first sampled texel in or below a row.
+/// Returns the place of the first sampled texel in or below a row.
 std::size_t first_from(const TexelSamples& all, int row) {
   return static_cast<std::size_t>(
       std::ranges::lower_bound(all.texels, row, {}, [](const std::array<int, 2>& t) { return t[1]; }) -

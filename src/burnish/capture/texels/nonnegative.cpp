@@ -33,7 +33,7 @@ class ActiveSet {
  private:
   static constexpr double kMinSquare = 1e-300, kMinSlope = 1e-12;
 
-  /// The unknown at 0 along which the sum falls fastest; n_ if there is none.
+  /// Returns the unknown at 0 along which the sum falls fastest; n_ if there is none.
   std::size_t steepest() const noexcept {
     std::size_t best = n_;
     double most = 0;

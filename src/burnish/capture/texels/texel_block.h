@@ -102,9 +102,9 @@ class TexelBlock {
   const TexelRow& measured(std::size_t k, std::size_t c) const noexcept {
     return values_[k * kCaptureChannels + c];
   }
-  /// The model's f cos(theta_i) of one picture and channel.
+  /// Returns the model's f cos(theta_i) of one picture and channel.
   TexelRow modelled(std::size_t k, std::size_t c) const noexcept;
-  /// The place of a pixel in the samples.
+  /// Returns the place of a pixel in the samples.
   std::size_t pixel(std::size_t k, std::size_t i) const noexcept {
     return pictures_[k] * setting_.samples.size() + range_.texel(i);
   }

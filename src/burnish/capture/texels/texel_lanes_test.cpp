@@ -289,7 +289,7 @@ SomeEquations some_equations(std::size_t n, Pcg32& random) {
   return some;
 }
 
-/// The equations that find_weights solves in one lane: the whole matrix, with the ridge, and the right side.
+/// Returns the equations that find_weights solves in one lane: the whole matrix, with the ridge, and the right side.
 std::pair<std::vector<double>, std::vector<double>> equations_of_lane(const SomeEquations& some, double ridge,
                                                                       std::size_t lane) {
   const std::size_t n = some.vector.size();

@@ -57,7 +57,7 @@ class TexelSolver {
       all_count += other.all_count;
       return *this;
     }
-    /// Mean squares; nothing where there is no value.
+    /// Returns the mean squares; nothing if there is no value.
     std::optional<double> seen_mean() const noexcept { return mean(seen, seen_count); }
     std::optional<double> all_mean() const noexcept { return mean(all, all_count); }
 

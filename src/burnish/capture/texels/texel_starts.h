@@ -24,7 +24,7 @@ std::vector<std::vector<std::size_t>> pure_texels(const TexelSamples& samples, c
                                                   const std::vector<float>& normals, double exposure,
                                                   std::size_t count);
 
-/// The general lobes that describe texels: three channels, each lobe in one channel alone.
+/// Returns the general lobes that describe texels: three channels, each lobe in one channel alone.
 FactoredBrdf general_lobes();
 
 }  // namespace burnish

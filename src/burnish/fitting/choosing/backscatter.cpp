@@ -26,7 +26,7 @@ constexpr double kRetroRingLow = 8.0 / 3, kRetroRingHigh = 16.0 / 3;
 constexpr double kMinTilt = radians(10);  // of the half vector: the highlight lies at the normal
 constexpr double kMinRatio = 2;
 
-/// The mean over channels and azimuths at some theta_d; nothing if a value is not known.
+/// Returns the mean over channels and azimuths at some theta_d; nothing if a value is not known.
 template <class Angles>
 std::optional<double> mean_at(BrdfRef source, double theta_h, const Angles& theta_d_deg) {
   std::vector<double> f(source.channels());

@@ -26,7 +26,8 @@ struct RetroFactor {
 };
 using Tape = fixtures::GlossyTimes<RetroFactor>;
 
-/// The largest relative error of a model at wi = wo and at one degree from there, 15 to 60 degrees off the normal.
+/// Returns the largest relative error of a model at wi = wo and at one degree from there, 15 to 60 degrees off the
+/// normal.
 double error_of_peak(const Tape& tape, const FactoredBrdf& model) {
   double largest = 0;
   for (const double theta_deg : {15.0, 30.0, 60.0})

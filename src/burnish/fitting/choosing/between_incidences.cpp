@@ -19,7 +19,7 @@ constexpr double kApart_deg = 4, kApart = 0.25;
 constexpr std::array kDistances_deg{0.0, 1.0, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0};
 constexpr int kSides = 5;  // of wo about wi, over half a circle
 
-/// Polar angles in degrees that have enough samples near wi = wo.
+/// Returns the polar angles, in degrees, that have enough samples near wi = wo.
 std::vector<double> incidences_of(const SampleSource& source) {
   struct Sum {
     double theta = 0;
@@ -42,7 +42,7 @@ std::vector<double> incidences_of(const SampleSource& source) {
   return found;
 }
 
-/// A pair with wi at a polar angle, and wo at a distance and an azimuth about wi.
+/// Returns a pair with wi at a polar angle, and wo at a distance and an azimuth about wi.
 DirectionPair pair_at(double theta_deg, double distance_deg, double azimuth) {
   const double theta = radians(theta_deg), distance = radians(distance_deg);
   const Vec3 wi = spherical_direction(theta, 0), down = spherical_direction(theta + kHalfPi, 0);

@@ -35,7 +35,7 @@ class NoiseScale {
 
   const std::optional<ErrorLevel>& noise() const noexcept { return noise_; }
   ErrorLevel error_of(BrdfRef model) const;
-  /// The largest ratio of an error to the noise, among the errors that are known of both. A relative noise below
+  /// Returns the largest ratio of an error to the noise, among the errors that are known of both. A relative noise below
   /// kMinRelative counts as kMinRelative. Without noise: the relative error over kMinRelative.
   double excess(const ErrorLevel& error) const noexcept;
 
@@ -45,8 +45,8 @@ class NoiseScale {
   std::optional<ErrorLevel> noise_;
 };
 
-/// The reason to try no more bytes after these trials, whose bytes rise; nothing: continue. Precondition: at least
-/// one trial. The reasons are:
+/// Returns the reason to try no more bytes after these trials, whose bytes rise; nothing: continue. Precondition: at
+/// least one trial. The reasons are:
 /// - noise, or floor without a known noise: the last excess is at most 1;
 /// - gain: neither the excess nor the relative error fell by kMinBudgetGain per doubling of the bytes since the trial
 ///   before;

@@ -38,7 +38,7 @@ TrainingSet about(const TrainingSet& set, std::size_t pairs) {
   return thinned(set, std::max<std::size_t>(1, set.size() / pairs));
 }
 
-/// The heat of models of an isotropic source.
+/// Returns the heat of models of an isotropic source.
 Heat volume_heat(const TrainingSet& set, const RefineOptions& options) {
   return {.parts = TrialParts(set, kVolumeTrialPart),
           .options = in_few_steps(options, kVolumeTrialSteps),
@@ -69,7 +69,8 @@ Candidate best_volume(const std::vector<ModelSpec>& specs, const TrainingSet& se
   return std::move(winner(candidates));
 }
 
-/// The candidates of try_fetches: models with several numbers of fetches that the bytes hold, each number once.
+/// Returns the candidates of try_fetches: models with several numbers of fetches that the bytes hold, each number
+/// once.
 std::vector<Candidate> candidates_by_fetches(BrdfRef source, CostLimit limit) {
   const LobePlan lobes = plan_for(source, limit.bytes, 0, limit.texel_bytes);
   std::vector<int> fetches(std::begin(kFetches), std::end(kFetches));

@@ -25,7 +25,7 @@ LobePlan plan_within(BrdfRef source, const CostLimit& limit);
 std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, const CostLimit& limit,
                                     const RefineOptions& options);
 
-/// The number and distribution of pairs to draw for volumes.
+/// Returns the number and distribution of pairs to draw for volumes.
 TrainingOptions training_for_volumes(const CostLimit& limit);
 
 /// Fits the spec that serves best. Each spec is fitted to part of the pairs in few steps and judged on another part;

@@ -17,7 +17,7 @@
 namespace burnish {
 namespace {
 
-// The bytes of a model of the spec, with texels of four bytes.
+// Returns the bytes of a model of the spec, with texels of four bytes.
 std::size_t bytes_of(const ModelSpec& spec) {
   LogModel model{.spec = spec, .channels = 3, .log_values = {}};
   for (const ModelSpec::TableSpec& table : spec.tables)

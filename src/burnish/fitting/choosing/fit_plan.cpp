@@ -47,7 +47,7 @@ void refine_in_rounds(LobesFit& fit, const TrainingSet& set, const RefineOptions
     refine_part(fit, set, lookups, options, (steps + k) / kRounds, part(k), part(k + 1));
 }
 
-/// The number of steps of the last refinement on part of the data, before those on all data.
+/// Returns the number of steps of the last refinement on part of the data, before those on all data.
 int rough_steps(const TrainingSet& coarse, const TrainingSet& set, const RefineOptions& options) {
   return coarse.size() < set.size() ? std::min(2 * kRoughSteps, options.max_iterations) : 0;
 }
@@ -152,7 +152,7 @@ LogModel with_next_lobe(LogModel model, const LobesInTurn& lobes, std::size_t co
   return resampled(model, spec);
 }
 
-/// A low value of each channel, which represents the wide lobe.
+/// Returns a low value of each channel, which represents the wide lobe.
 std::vector<float> low_values(const TrainingSet& set) {
   const auto channels = set.channels;
   std::vector<float> low(channels);

@@ -79,8 +79,8 @@ std::vector<Candidate> first_heat(std::vector<ModelSpec> specs, const TrainingSe
   return finalists(std::move(candidates), kFinalists);
 }
 
-/// The final heat. Finalists come near their least error at all nodes, on a quarter of the pairs. With few steps some
-/// models would lose that win in the end.
+/// Returns the final heat. Finalists come near their least error at all nodes, on a quarter of the pairs. With few
+/// steps some models would lose that win in the end.
 Heat final_heat(const TrainingSet& mean, const RefineOptions& options, double worth_of_fetch) {
   return {.parts = TrialParts(mean, kFinalPart),
           .options = in_few_steps(options, std::min(kFinalSteps, options.max_iterations)),

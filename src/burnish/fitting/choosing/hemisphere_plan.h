@@ -37,7 +37,7 @@ LobesFit fit_hemispheres(const TrainingSet& set, const Candidate& start, const R
 FetchTrials try_hemispheres(const TrainingSet& set, CostLimit limit, const RefineOptions& options,
                             const LobePlan& lobes, const RefineOptions& of_lobes);
 
-/// The number and distribution of pairs to draw for hemispheres.
+/// Returns the number and distribution of pairs to draw for hemispheres.
 TrainingOptions training_for_hemispheres();
 
 }  // namespace burnish

@@ -63,7 +63,7 @@ TEST(LayOut, ProductsFillTheirBytesAndLeaveOutWhatTheyDoNotHold) {
   EXPECT_FALSE(lay_out(form, {.bytes = 100}, 3));
 }
 
-/// FactoredBrdf::bytes of a model with this spec.
+/// Returns FactoredBrdf::bytes of a model with this spec.
 std::size_t bytes_in_the_end(const ModelSpec& spec, std::size_t channels, TableFormat format) {
   LogModel model{.spec = spec, .channels = channels, .log_values = {}};
   for (const ModelSpec::TableSpec& table : spec.tables)

@@ -41,7 +41,7 @@ int lobes_for(double texels) {
   return std::clamp(static_cast<int>(std::lround(std::log2(texels / 82))), 1, 8);
 }
 
-// The cost of a node in texels; a table with one channel for all costs only a part of a texel.
+// Returns the cost of a node in texels; a table with one channel for all costs only a part of a texel.
 double node_cost(const PlannedFactor& factor, std::size_t channels, std::size_t texel_bytes) {
   if (!factor.grey) return 1;
   return static_cast<double>(shared_texel_bytes(channels, texel_bytes)) / static_cast<double>(texel_bytes);

@@ -37,10 +37,10 @@ struct LobePlan {
   friend bool operator==(const LobePlan&, const LobePlan&) = default;
 };
 
-/// The plan that serves a number of bytes best, measured on the materials of docs/results/accuracy.md. Its lobes are
-/// p(wo) p(wi) q(theta_h) m(theta_m) r(theta_d). Several lobes also have s(wi + wo/2) s(wi/2 + wo), and share one
-/// z(theta_h). If there are texels to spare, they have grids over two of the three angles. For an anisotropic source,
-/// p and q are hemispheres. `lobes` counts the wide lobe too; 0: the bytes decide.
+/// Returns the plan that serves a number of bytes best, measured on the materials of docs/results/accuracy.md. Its
+/// lobes are p(wo) p(wi) q(theta_h) m(theta_m) r(theta_d). Several lobes also have s(wi + wo/2) s(wi/2 + wo), and
+/// share one z(theta_h). If there are texels to spare, they have grids over two of the three angles. For an
+/// anisotropic source, p and q are hemispheres. `lobes` counts the wide lobe too; 0: the bytes decide.
 LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t texel_bytes);
 
 /// Returns default_plan for a source, with more factors if the bytes hold their tables. If an isotropic source is not

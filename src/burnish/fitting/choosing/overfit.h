@@ -7,8 +7,8 @@
 
 namespace burnish {
 
-/// The number and distribution of pairs to draw for a model of so many bytes. Many texels would fit few pixels
-/// exactly and predict no others, so they need more pairs. They can also resolve a highlight's core and the
+/// Returns the number and distribution of pairs to draw for a model of so many bytes. Many texels would fit few
+/// pixels exactly and predict no others, so they need more pairs. They can also resolve a highlight's core and the
 /// terminator, so pairs are denser there; few texels would fit other directions worse for that.
 TrainingOptions training_for(std::size_t bytes, std::size_t texel_bytes, bool isotropic);
 

@@ -15,9 +15,9 @@ struct PlanChange {
   std::function<std::optional<LobePlan>(const LobePlan&)> apply;
 };
 
-/// The changes that search_plan tries: one lobe more or fewer; for each factor a larger or smaller share, another
-/// warp, one table for all lobes, or its removal; factors over further projections; other coefficients of these
-/// projections.
+/// Returns the changes that search_plan tries: one lobe more or fewer; for each factor a larger or smaller share,
+/// another warp, one table for all lobes, or its removal; factors over further projections; other coefficients of
+/// these projections.
 std::vector<PlanChange> list_changes(const LobePlan& plan);
 
 }  // namespace burnish

@@ -45,7 +45,7 @@ std::size_t nodes_of(const PlannedFactor& factor, int side) {
   return is_disk(factor) ? n * n : n;
 }
 
-// The factors of one set, with the sizes of the default plan.
+// Returns the factors of one set, with the sizes of the default plan.
 std::vector<PlannedFactor> factors_of(const std::string& set, std::size_t texels, bool isotropic) {
   std::vector<PlannedFactor> chosen;
   // The isotropic plan gets so few bytes that it has no grids.
@@ -105,9 +105,9 @@ constexpr int kRetroDiskP = 16, kRetroDiskQ = 32;  // sides of p and q of anisot
 // were .170 with b alone, .112 with k, .108 with q or .100 with p, .100 with both, and .091 with all.
 constexpr std::array<std::string_view, 6> kRetroFactors{"ppqkba", "ppqkb", "ppkb", "qkb", "kb", "b"};
 
-// A lobe of the given factors among p(wo) p(wi) q(h) k(theta_m,theta_d) b(theta_h,theta_d) a(theta_d,phi_d), with
-// denser nodes at wi = wo. There b follows the angle of both directions, and a the deviation from a round lobe. For
-// an anisotropic material, p and q are hemispheres.
+// Returns a lobe of the given factors among p(wo) p(wi) q(h) k(theta_m,theta_d) b(theta_h,theta_d) a(theta_d,phi_d),
+// with denser nodes at wi = wo. There b follows the angle of both directions, and a the deviation from a round lobe.
+// For an anisotropic material, p and q are hemispheres.
 //
 // Near wi = wo, nodes of b and a are evenly spaced in theta_d, so that tables that are smooth over their nodes are
 // smooth over theta_d. Nodes spaced by its root make a flat-topped lobe so steep at the neighbouring samples that the

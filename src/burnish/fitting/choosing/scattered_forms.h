@@ -10,8 +10,8 @@
 
 namespace burnish {
 
-/// The sets of factors of a lobe for scattered samples with at most `fetches` table reads; 0: any number. They go
-/// from "pqmr", the fullest, to "q", and are at least one.
+/// Returns the sets of factors of a lobe for scattered samples with at most `fetches` table reads; 0: any number.
+/// They go from "pqmr", the fullest, to "q", and are at least one.
 std::vector<std::string> scattered_factor_sets(int fetches, bool isotropic);
 
 /// Returns a lobe of these factors for the source with at most `most` texels within `bytes`. Its p has at least
@@ -19,7 +19,7 @@ std::vector<std::string> scattered_factor_sets(int fetches, bool isotropic);
 std::optional<ModelSpec> scattered_spec(const std::string& set, std::size_t bytes, std::size_t most,
                                         const SampleSource& source, TableFormat format, int least_p = 0);
 
-/// The models to compare: the fullest set of factors, from coarse to fine, at last with a p fine enough to
+/// Returns the models to compare: the fullest set of factors, from coarse to fine, at last with a p fine enough to
 /// distinguish incidences. If the bytes hold too few texels for a choice, or if fetches forbid a fuller set, the
 /// other sets are compared too.
 std::vector<ModelSpec> scattered_specs(const SampleSource& source, std::size_t bytes, TableFormat format,

@@ -33,7 +33,7 @@ std::size_t texels_of(const ModelSpec& spec) {
   return sum;
 }
 
-// The source with at most kTrialChannels of its channels, evenly spread.
+// Returns the source with at most kTrialChannels of its channels, evenly spread.
 SampleSource some_channels(const SampleSource& source) {
   const auto channels = source.channels;
   if (channels <= kTrialChannels) return source;
@@ -118,14 +118,15 @@ class Trials {
   HomomorphicOptions options_;
 };
 
-// The lobe about wi = wo, if options ask for one and bytes and fetches hold it.
+// Returns the lobe about wi = wo, if options ask for one and bytes and fetches hold it.
 std::optional<ModelSpec> asked_retro_spec(const SampleSource& source, std::size_t bytes,
                                           const HomomorphicOptions& options, int fetches) {
   if (options.backscatter <= 0) return std::nullopt;
   return retro_spec_within(bytes, source, options.format, fetches);
 }
 
-// The plan for many samples: a model as fine as the bytes hold, or the lobe about wi = wo if it predicts better.
+// Returns the plan for many samples: a model as fine as the bytes hold, or the lobe about wi = wo if it predicts
+// better.
 ScatteredPlan plan_many(const SampleSource& source, std::size_t bytes, std::optional<double> smooth,
                         const HomomorphicOptions& options, int fetches) {
   // Trials are the same as those of choose_smoothness for many samples.

@@ -233,8 +233,8 @@ FactoredBrdf planned(const Samples& samples, std::optional<double> smooth, int r
   return fit_homomorphic(source, plan.spec, options).brdf;
 }
 
-// The ratio of the model to the truth at wi = wo, at each incidence. wi lies at the azimuth `from`, and wo next to it
-// in the direction `side`.
+// Returns the ratio of the model to the truth at wi = wo, at each incidence. wi lies at the azimuth `from`, and wo
+// next to it in the direction `side`.
 std::vector<double> heights_of_peak(const FactoredBrdf& model, BrdfRef brdf, double side = 0,
                                     double from = 0) {
   constexpr double kApart = 1e-9;

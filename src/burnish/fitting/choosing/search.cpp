@@ -107,7 +107,7 @@ class PlanSearch {
     return std::ranges::any_of(kept, [](bool b) { return b; });
   }
 
-  /// The objective of each change; infinite if it does not apply or the bytes do not hold it.
+  /// Returns the objective of each change; infinite if it does not apply or the bytes do not hold it.
   std::vector<double> try_alone(const std::vector<PlanChange>& changes, const Candidate& best, int round) {
     std::vector<std::optional<LobePlan>> changed;
     for (const PlanChange& change : changes) {

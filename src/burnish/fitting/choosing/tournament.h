@@ -45,7 +45,7 @@ struct Heat {
   ErrorTerms shares;          ///< of the objective that judges them
   double worth_of_fetch = 0;  ///< >= 0; a fetch must lower the objective by this share of shares.sum()
 
-  /// The objective of a model on the judged part.
+  /// Returns the objective of a model on the judged part.
   double error_of(const LogModel& fit) const;
 
   /// Fits all candidates, on all threads, and sets their errors: the objective on the judged part, and what their
@@ -64,7 +64,7 @@ Candidate& winner(std::span<Candidate> candidates);
 /// A knee's factor: the error of the model that is chosen may be this many times the least.
 inline constexpr double kKneeFactor = 1.02;
 
-/// The trial that reports a candidate's number of fetches. Its error is exp(error / shares.sum()).
+/// Returns the trial that reports a candidate's number of fetches. Its error is exp(error / shares.sum()).
 FetchTrial fetch_trial_of(const Candidate& candidate, const ErrorTerms& shares);
 
 /// Candidates that differ in fetches.
