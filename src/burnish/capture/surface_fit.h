@@ -92,10 +92,10 @@ struct SurfaceFit {
 /// throws.
 SurfaceFit fit_surface(Capture capture, const SurfaceFitOptions& options);
 
-/// The call of all ranks of options.crew except 0. It finds this rank's share of the lobes, which all ranks exchange,
-/// and the weights of its rows, which rank 0 gathers. Only rank 0 reports progress and writes checkpoints. The result
-/// is the same to the bit for any number of ranks. Throws Error as fit_surface does. If one rank throws, the ranks
-/// that wait for it have to be ended by the program that started them.
+/// Takes part in fit_surface at all ranks of options.crew except 0. Finds this rank's share of the lobes, which all
+/// ranks exchange, and the weights of its rows, which rank 0 gathers. Only rank 0 reports progress and writes
+/// checkpoints. The result is the same to the bit for any number of ranks. Throws Error as fit_surface does. If one
+/// rank throws, the ranks that wait for it have to be ended by the program that started them.
 void help_fit_surface(Capture capture, const SurfaceFitOptions& options);
 
 /// Returns the report as JSON.

@@ -28,9 +28,10 @@ void power_span(const PowerCoefficients& coefficients, std::span<const float> co
 void power_span(PowerMethod method, std::span<const float> cosines, std::span<const float> exponents,
                 std::span<float> out);
 
-/// Returns the largest |kernel - definition| for exponents to 1024. It comes from float rounding and, for the Gaussians,
-/// from their short exponential; with one exponent a value the coefficients are rounded too. For quadratic_raw it is
-/// relative to 1 + exponent (1 - c), the size of its terms. The values are measured on dense samples, not proved.
+/// Returns the largest |kernel - definition| for exponents to 1024. It comes from float rounding and, for the
+/// Gaussians, from their short exponential; with one exponent a value the coefficients are rounded too. For
+/// quadratic_raw it is relative to 1 + exponent (1 - c), the size of its terms. The values are measured on dense
+/// samples, not proved.
 double power_span_rounding(PowerMethod method, bool exponent_per_value) noexcept;
 
 /// Blinn-Phong reflection of one directional light seen by a distant viewer.

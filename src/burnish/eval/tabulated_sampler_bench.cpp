@@ -1,5 +1,6 @@
-// Directions drawn a second, with their densities, on one thread, compared with evaluation of the same model and with
-// the baselines. wo are random, so that table rows are not already in the cache.
+// This benchmark draws directions with their densities on one thread, and counts them per second. It compares them
+// with evaluation of the same model and with the baselines. The directions wo are random, so that table rows are not
+// already in the cache.
 #include <algorithm>
 #include <cmath>
 #include <string>

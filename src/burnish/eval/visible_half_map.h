@@ -28,8 +28,8 @@ struct ReflectedLight {
   std::vector<double> size;  ///< reflected_size at the rule's directions
 };
 
-/// Finds the map whose cells, `rows` by `columns` of them with optimal masses, give weights f cos / pdf the least
-/// relative second moment, as the mean of its logarithms over the views. The search is deterministic, and the same on
+/// Finds the map that gives weights f cos / pdf the least relative second moment, as the mean of its logarithms over
+/// the views. The map has `rows` by `columns` cells with optimal masses. The search is deterministic, and the same on
 /// every machine to rounding.
 VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bool isotropic, int rows,
                                     int columns);

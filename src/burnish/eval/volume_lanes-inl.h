@@ -20,13 +20,14 @@
 HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
-// With s = wi + wo and d = wi - wo, whose sign does not matter, the formulas of projection-inl.h in an order of their
-// own, lanes across angles or roots before quotients, and held to the definition by factored_eval_test.cpp:
+// The formulas are those of projection-inl.h, with s = wi + wo and d = wi - wo, whose sign does not matter. Their
+// order differs: lanes across angles, or roots before quotients. factored_eval_test.cpp compares them with the
+// definition:
 //   theta_h   r = |s_xy|                den = |s| + s_z
 //   theta_d   r = |d|                   den = |s| + 2
 //   phi_d     r = |s_y d_x - s_x d_y|   den = |(d_z |s|, r)| + |d_z| |s|
-// All four lengths are roots of sums of squares, and none waits for another's. r > den, of directions that are no unit
-// vectors and of squares that vanish, ends at the last node like r = den.
+// All four lengths are roots of sums of squares, and none waits for another's. Vectors that are no unit vectors and
+// squares that vanish can give r > den, which ends at the last node as r = den does.
 
 /// Returns the places where lookups begin, in floats from the tables' start.
 template <class Tag>
@@ -142,8 +143,8 @@ HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, con
 /// registers would go to memory.
 struct VolumePipeline {
   static constexpr std::size_t kAhead = 2 * kLanes, kRing = 4 * kLanes;  // pairs
-  static constexpr std::size_t kFetched = FactoredPlan::kMaxBlock;       // so far ahead memory is asked for
-  /// The places where pairs look up: a ring of some vectors.
+  static constexpr std::size_t kFetched = FactoredPlan::kMaxBlock;       // memory is prefetched so far ahead
+  /// Places of the lookups, in a ring of some vectors.
   alignas(64) std::int32_t volume[kRing], line[kRing];  // first floats
   alignas(64) float x[kRing], y[kRing], z[kRing], along[kRing];
   alignas(64) float above[kRing];  // > 0: both above the horizon; not-a-number: no directions

@@ -101,7 +101,7 @@ class Damper {
 
   bool damps(const Lobe& lobe) const { return damped_uses(lobe) > 0; }
 
-  // Returns the model of the lobes that no gain reaches; all others are made black.
+  // Returns the model of the lobes that no gain reaches; all other lobes are made black.
   FactoredBrdf rest() const {
     std::vector<Lobe> lobes(brdf_.lobes().begin(), brdf_.lobes().end());
     for (Lobe& lobe : lobes)
@@ -143,7 +143,7 @@ class Damper {
     return FactoredBrdf(brdf_.channels(), std::move(tables), {lobes.begin(), lobes.end()});
   }
 
-  // Returns the same in the tables' formats; the scales take what storing divides out.
+  // Returns the damped model in the tables' formats; the scales take the factors that storing divides out.
   FactoredBrdf store(std::span<const Lobe> lobes) const {
     std::vector<Table> tables(brdf_.tables().begin(), brdf_.tables().end());
     std::vector<Lobe> scaled(lobes.begin(), lobes.end());

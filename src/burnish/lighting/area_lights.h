@@ -7,7 +7,7 @@
 
 namespace burnish {
 
-/// Functions that return lights as polygons, in the frame of their arguments. The lit point is the origin. All
+/// These functions return lights as polygons, in the frame of their arguments. The lit point is the origin. All
 /// corners are in order.
 
 /// Returns a rectangle from its centre and half its sides.

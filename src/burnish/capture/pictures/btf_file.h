@@ -22,9 +22,12 @@ class BtfFile {
   /// True if a file begins with the signature of one of Bonn's formats. False if it cannot be read.
   static bool recognizes(const std::filesystem::path& path);
 
-  /// Reads all but the texels. Throws Error with the offset and what was expected there. It refuses Bonn's other
-  /// kinds of files, lights that differ between views, directions below the surface, other than three channels, a
-  /// colour model that is not implemented, rotated frames, and sizes that do not fit the file.
+  /// Reads all but the texels. Throws Error with the offset and the expected content for:
+  /// - Bonn's other kinds of files;
+  /// - lights that differ between views, or directions below the surface;
+  /// - other than three channels, or a colour model that is not implemented;
+  /// - rotated frames;
+  /// - sizes that do not fit the file.
   explicit BtfFile(std::filesystem::path path);
 
   const std::filesystem::path& path() const noexcept { return path_; }

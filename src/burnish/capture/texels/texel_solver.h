@@ -16,14 +16,15 @@ namespace burnish {
 struct TexelFits {
   std::vector<float> weights;  ///< [texel][lobe], >= 0
   std::vector<float> normals;  ///< x and y, [texel][2]
-  /// The trust in each pixel, in [0, 1]; [picture][texel], 0 for held-out pictures. It is 0 for missing pixels and
-  /// for clipped ones below the model, and small for pixels far from the model. Empty unless asked for.
+  /// The trust in each pixel, in [0, 1]; [picture][texel]. It is 0 for missing pixels and held-out pictures, and
+  /// small for pixels far from the model. Clipped channels below the model count as no error. Empty unless
+  /// Options::trust is set.
   std::vector<float> trust;
-  /// The remaining cost of each texel's errors; empty unless asked for.
+  /// The remaining cost of each texel's errors; empty unless Options::costs is set.
   std::vector<double> costs;
 };
 
-/// Fits weights, and normals if asked for, of texels whose lobes are known. It minimizes the squared errors of pixels
+/// Fits weights, and on request normals, of texels whose lobes are known. It minimizes the squared errors of pixels
 /// as they are seen, about (exposure f cos)^(1/2). Errors beyond a few percent of white count less and less (weights
 /// of [GemanMcClure1987]), so that shadows and misregistered edges have little influence. Clipped pixels count if the
 /// model is below them. Texels are independent: the result has the same bits for any number of threads and any cut

@@ -35,8 +35,8 @@ class NoiseScale {
 
   const std::optional<ErrorLevel>& noise() const noexcept { return noise_; }
   ErrorLevel error_of(BrdfRef model) const;
-  /// Returns the largest ratio of an error to the noise, among the errors that are known of both. A relative noise below
-  /// kMinRelative counts as kMinRelative. Without noise: the relative error over kMinRelative.
+  /// Returns the largest ratio of an error to the noise, among the errors that are known of both. A relative noise
+  /// below kMinRelative counts as kMinRelative. Without noise it returns the relative error over kMinRelative.
   double excess(const ErrorLevel& error) const noexcept;
 
  private:

@@ -19,8 +19,9 @@ struct SmoothFit {
 };
 
 /// Runs fit_plan on a set that was drawn from the source as in `drawn`. If the set has few pairs a texel, new pairs
-/// are drawn as a check. If their objective is far above the set's, the plan is fitted with ten times options.smooth,
-/// and again as long as the objective on the new pairs falls. Throws Error as fit_plan and draw_training_set do.
+/// are drawn as a check. Their objective may be far above the set's. Then the plan is fitted with ten times
+/// options.smooth, and so on as long as the objective on the new pairs falls. Throws Error as fit_plan and
+/// draw_training_set do.
 SmoothFit fit_without_overfit(BrdfRef source, const TrainingSet& set, const LobePlan& plan, std::size_t bytes,
                               std::size_t texel_bytes, const TrainingOptions& drawn,
                               const RefineOptions& options);

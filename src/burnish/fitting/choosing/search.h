@@ -27,9 +27,9 @@ struct SearchResult {
   std::vector<SearchTrial> trials;
 };
 
-/// Returns plan_for with the number of lobes that serves an anisotropic source best: two, three or four. Each is
-/// fitted in few steps to part of the set and judged on another part, at fewer bytes if that part has too few pairs.
-/// options.progress is called with rising shares of these trials. Throws Error as default_plan does.
+/// Returns plan_for with the number of lobes that fits an anisotropic source best: two, three or four. Each number is
+/// fitted in few steps to part of the set and judged on another part. If that part has too few pairs, these trials
+/// use fewer bytes. Calls options.progress with rising shares of the trials. Throws Error as default_plan does.
 LobePlan plan_for(BrdfRef source, const TrainingSet& set, std::size_t bytes, int lobes,
                   std::size_t texel_bytes, const RefineOptions& options);
 

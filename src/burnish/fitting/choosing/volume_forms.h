@@ -24,10 +24,15 @@ ModelSpec usual_volume_spec(const CostLimit& limit, std::size_t channels, const 
 /// Returns isotropic models of one lobe within the limit. They differ in the distribution of the volume's nodes among
 /// its axes. Throws Error if the bytes hold no model.
 ///
-/// The volume is g(theta_h,theta_d,phi_d). From two fetches on there is a line z(theta_h), from four p(wo) p(wi), for
-/// three and from five on r(theta_d), from six on a grid k(theta_m,theta_d), and from eight on s(wi + wo/2) s(wi/2 +
-/// wo). From 600 texels and three fetches on, one model has a grid b(theta_d,theta_h) instead of r, and for four
-/// fetches k instead of p(wo) p(wi).
+/// The volume is g(theta_h,theta_d,phi_d). The other tables depend on the number of fetches:
+/// - z(theta_h), a line: from two on;
+/// - p(wo) p(wi): from four on;
+/// - r(theta_d): three, and from five on;
+/// - k(theta_m,theta_d), a grid: from six on;
+/// - s(wi + wo/2) s(wi/2 + wo): from eight on.
+///
+/// From 600 texels and three fetches on, one model has a grid b(theta_d,theta_h) instead of r. With four fetches it
+/// has k instead of p(wo) p(wi).
 ///
 /// Sources with these properties change the models:
 /// - not its own mirror image: the volume is g(theta_h,theta_d,phi_s). The model with the grid b comes first, from
