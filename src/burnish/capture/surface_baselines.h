@@ -10,7 +10,7 @@ namespace burnish {
 /// The score of one method that could stand in for lobes whose scales are maps.
 struct BaselineScore {
   std::string method;
-  double bytes_a_texel = 0;        ///< as stored, normals apart
+  double bytes_a_texel = 0;        ///< stored bytes, without normals
   std::optional<double> held_out;  ///< PSNR of the held-out pictures at the texels that are compared
 };
 

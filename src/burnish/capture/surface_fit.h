@@ -22,7 +22,7 @@ enum class NormalsFrom { capture, flat, estimate };
 
 struct SurfaceFitOptions {
   std::size_t lobes = 6;              ///< 1 to kMaxSurfaceLobes
-  std::size_t lobe_bytes = 24 << 10;  ///< of each lobe's tables, [kMinLobeBytes, kMaxLobeBytes]
+  std::size_t lobe_bytes = 24 << 10;  ///< bytes of each lobe's tables, [kMinLobeBytes, kMaxLobeBytes]
   /// Lobes that are known: only weights are fitted. Each of the model's lobes has a weight.
   std::optional<FactoredBrdf> book = {};
   /// None: the capture's normals, or estimated ones if it has none. Samples have flat ones, since their directions
@@ -33,8 +33,8 @@ struct SurfaceFitOptions {
   std::optional<int> rounds = {};
   /// Adds copies of the lobes, widened by the bumps that mip levels lose. Each copy costs one more fetch per light.
   bool widened = false;
-  std::size_t tile_bytes = 256 << 20;  ///< of pictures in memory at a time
-  std::uint64_t seed = 1;              ///< of the texels and pixels that lobes are fitted to
+  std::size_t tile_bytes = 256 << 20;  ///< bytes of pictures in memory at a time
+  std::uint64_t seed = 1;              ///< for the texels and pixels that lobes are fitted to
   /// A file that records the progress, written after each round and each part; empty: none. A fit resumes from an
   /// existing file of the same capture and options. The file stays: the caller removes it once the result is saved.
   std::filesystem::path checkpoint = {};
@@ -63,7 +63,7 @@ struct SurfaceReport {
   std::size_t lights_and_views = 0;
   bool of_samples = false;  ///< texels have their own samples, at most as many as there are pictures
   std::vector<Capture::LeftOut> left_out;
-  std::size_t missing_pixels = 0, clipped_pixels = 0;  ///< of the pictures that are fitted
+  std::size_t missing_pixels = 0, clipped_pixels = 0;  ///< in the fitted pictures
   std::size_t texels_without_data = 0;                 ///< texels that no fitted picture shows
   NormalsFrom normals = NormalsFrom::flat;
   double exposure = 1;  ///< makes the 97th percentile of the fitted pixels white
@@ -71,7 +71,7 @@ struct SurfaceReport {
   std::size_t weight_bytes = 0, frame_bytes = 0, lobe_bytes = 0;  ///< the first two a texel
   double bytes_a_texel = 0;                                       ///< weights and lobes, normals apart
   double seconds = 0;
-  double weight_seconds = 0;  ///< of these, on weights and normals of all texels, without reading
+  double weight_seconds = 0;                 ///< without reading, for weights and normals of all texels
   int resumed_rounds = 0, resumed_rows = 0;  ///< rounds of lobes and rows of weights taken from a checkpoint
 };
 

@@ -28,7 +28,7 @@ namespace {
 constexpr std::size_t kSampleValues = 6'000'000;
 // Pixels that lobes are refined on: half of them count as pixels, half as pairs.
 constexpr std::size_t kTrainingPixels = 150'000, kStartPixels = 15'000;
-constexpr std::uint64_t kFirstRoundStream = 100;  // of training pixels; smaller ones are of starts
+constexpr std::uint64_t kFirstRoundStream = 100;  // for training pixels; smaller ones are for starts
 // The same shares as for models with volumes (fitting/fit.cpp).
 constexpr ErrorTerms kShares{.pictures = 3, .dimmed = 0.3, .relative = 0.4, .log_cos = 0.4};
 // Volumes are smooth, so that they are sound at directions that no picture has; lines hold what is narrow.
@@ -44,7 +44,7 @@ const HomomorphicOptions kStart{
 constexpr double kHalfNodes = 30, kDifferenceNodes = 20, kAzimuthNodes = 6;
 constexpr double kLineShare = 0.07;
 constexpr std::size_t kTexelBytes = 4;  // rgb9e5
-constexpr double kCodeRoom = 1.25;      // of a weight's scale over nearly all texels' values
+constexpr double kCodeRoom = 1.25;      // a weight's scale over nearly all texels' values
 constexpr double kNearlyAll = 0.999;
 
 /// Returns the model of K lobes z(theta_h) g(theta_h,theta_d,phi_d), each of that many bytes.
@@ -91,7 +91,7 @@ struct LobeSetting {
 struct LobesInRounds {
   int rounds = 0;
   LogModel model;
-  FactoredBrdf brdf;  // of the model; after the last round rounded to what is stored
+  FactoredBrdf brdf;  // the model's; after the last round rounded to what is stored
 };
 
 /// Some texels, and the values found for them under the latest lobes: only normals before the first lobes.

@@ -16,7 +16,7 @@ struct SurfaceLobes {
   FactoredBrdf lobes;
   std::vector<float> scales;  ///< the scale of each lobe's weight codes, > 0
   double exposure = 1;        ///< makes the 97th percentile of the fitted pixels white
-  std::size_t missing_pixels = 0, clipped_pixels = 0;  ///< of the pictures that are fitted
+  std::size_t missing_pixels = 0, clipped_pixels = 0;  ///< in the fitted pictures
 };
 
 /// Reads a sample of the texels and fits lobes to it, or only weights if the task has a book of lobes. Resumes from

@@ -14,7 +14,7 @@ struct SurfaceTask {
   const SurfaceFitOptions& options;
   NormalsFrom normals;               ///< from the options, or else what suits the capture
   int rounds;                        ///< each finds lobes, then weights
-  std::vector<float> known_normals;  ///< of all texels, [row][x][2]; empty unless `normals` is of the capture
+  std::vector<float> known_normals;  ///< [row][x][2] of all texels; empty unless `normals` is of the capture
   std::uint64_t key;  ///< a hash of the capture as opened and of all that changes the result; even
 
   int ranks() const noexcept { return options.crew ? options.crew->ranks() : 1; }

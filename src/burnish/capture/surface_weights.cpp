@@ -61,7 +61,7 @@ class RowNotes {
 int tile_rows(const Capture& capture, const SurfaceTask& task) {
   const int most = capture.rows_within(task.options.tile_bytes), ranks = task.ranks();
   if (ranks == 1) return most;
-  constexpr int kMinTurns = 4;  // of each rank, so that a lost turn costs little
+  constexpr int kMinTurns = 4;  // turns of each rank; a lost turn then costs little
   const int height = capture.form().height;
   const int turns = std::max(kMinTurns, (height + most * ranks - 1) / (most * ranks));
   return std::max(1, (height + turns * ranks - 1) / (turns * ranks));

@@ -19,13 +19,13 @@ namespace {
 constexpr std::size_t kHalfBins = 32;  // even along the root of theta_h
 // pi / 2 with only these digits: more digits would move pixels at the edges of bins, and so change the bits of fits.
 constexpr double kBinnedAngle = 1.5707963;
-constexpr double kMinPairCosine = 0.05;  // of pairs; pixels may be lower
+constexpr double kMinPairCosine = 0.05;  // for pairs; pixels may be lower
 constexpr double kMinPixelCosine = 0.02;
 constexpr float kMinTrust = 0.05f;
-constexpr float kEarlyError = 0.07f;          // of squared errors beside those of the last rounds
+constexpr float kEarlyError = 0.07f;          // share of squared errors in mild trust
 constexpr float kHeld = 0.02f;                // weight of clipped pixels if the model already is above them
 constexpr std::size_t kDrawsPerPixel = 6;     // many draws fall on angles that already have enough pixels
-constexpr std::uint64_t kFirstStream = 1000;  // of random numbers; smaller ones are used elsewhere
+constexpr std::uint64_t kFirstStream = 1000;  // for random numbers; smaller ones are used elsewhere
 
 Vec3 normal_of(const std::vector<float>& normals, std::size_t t) noexcept {
   if (normals.empty()) return {0, 0, 1};
@@ -37,7 +37,7 @@ Vec3 normal_of(const std::vector<float>& normals, std::size_t t) noexcept {
 struct Candidate {
   std::uint32_t picture, texel;
   DirectionPair pair;
-  std::size_t bin;  // of theta_h
+  std::size_t bin;  // the bin of theta_h
 };
 
 struct Candidates {

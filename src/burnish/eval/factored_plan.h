@@ -16,10 +16,10 @@ struct FactoredPlan {
   static constexpr std::size_t kTogether = 3;      ///< channels that go through the lookups together
   static constexpr std::size_t kRowStride = 4;     ///< floats a node in a table's rows
   static constexpr std::size_t kPlaneVector = 16;  ///< floats of the vectors that hold planes
-  static constexpr std::size_t kMaxVectors = 8;    ///< of a plane; longer lines have rows only
+  static constexpr std::size_t kMaxVectors = 8;    ///< vectors of a plane; longer lines have rows only
   static constexpr std::size_t kMaxSlots = 1024;   ///< different positions in tables
   static constexpr std::size_t kMaxBlock = 128;    ///< directions that go through the steps together
-  static constexpr std::size_t kMaxSteps = 64;     ///< of one pair; larger models use batches
+  static constexpr std::size_t kMaxSteps = 64;     ///< steps of one pair; larger models use batches
 
   /// A position along an axis of tables, in cells from 0 to `cells`. (x, y) are those of the projected vector, and r
   /// is their length. A line's position is `size` times its warped tan(theta / 2), size = cells. A disk has two
@@ -70,11 +70,11 @@ struct FactoredPlan {
     static constexpr std::size_t kLanes = 8;
 
     std::size_t used = 0;               // lanes
-    std::array<bool, kSpacings> has{};  // of some lane
+    std::array<bool, kSpacings> has{};  // spacings of the lanes
     std::array<Spacing, kLanes> spacing{};
     alignas(32) std::array<std::array<std::int32_t, kLanes>, kSpacings> is{};  // -1 in lanes of a spacing
-    alignas(32) std::array<float, kLanes> size{}, parameter{}, cells{};        // as in Position
-    alignas(32) std::array<std::int32_t, kLanes> floats{};  // of the rows, from node to node
+    alignas(32) std::array<float, kLanes> size{}, parameter{}, cells{};        // see Position
+    alignas(32) std::array<std::int32_t, kLanes> floats{};  // floats of the rows, from node to node
     alignas(32) std::array<std::int32_t, kLanes> angle{};   // an Angle, or one of `apart`
     bool has_apart = false;
     alignas(32) std::array<std::int32_t, kLanes> is_apart{};  // -1 in lanes whose angle is
@@ -96,7 +96,7 @@ struct FactoredPlan {
 
     alignas(16) std::array<float, kLanes> cells{};
     alignas(16) std::array<std::int32_t, kLanes> root{};    // -1: even along the root of tan(theta / 2)
-    alignas(16) std::array<std::int32_t, kLanes> floats{};  // of the rows, from node to node
+    alignas(16) std::array<std::int32_t, kLanes> floats{};  // floats of the rows, from node to node
     /// The number that is added to `floats` times the bits of 1.5 2^23 + node to give the node's first float, modulo
     /// 2^32. The volume's first float is the sum over its lanes.
     alignas(16) std::array<std::int32_t, kLanes> start{};

@@ -35,7 +35,7 @@ TEST(FactoredPlan, LooksUpWhereTheModelDoes) {
     ASSERT_EQ(plan.products.size(), brdf.lobes().size());
     for (std::size_t j = 0; j < plan.products.size(); ++j) {
       std::size_t k = plan.products[j].first;
-      bool second = false;  // of a pair
+      bool second = false;  // the second use of a pair
       for (const FactorUse& use : brdf.ordered_factors(j)) {
         ASSERT_LT(k, plan.products[j].last);
         const FactoredPlan::Lookup& lookup = plan.lookups[k];

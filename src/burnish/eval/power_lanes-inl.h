@@ -83,7 +83,7 @@ HWY_INLINE SplitLane split_bits(Lane c) {
 // Returns 2^y for y >= kMinPower in units of kOctave.
 HWY_INLINE Lane exp2_of_octaves(Lane y) {
 #if BURNISH_TARGET_IS_AVX3
-  constexpr int kFloor = 9;  // of imm8: no scale, towards minus infinity, no exceptions
+  constexpr int kFloor = 9;  // imm8: no scale, towards minus infinity, no exceptions
   const Lane f{hn::Vec<D>{_mm512_reduce_ps(y.raw.raw, kFloor)}};
   return Lane(hn::Vec<D>{_mm512_scalef_ps(NearExact::exp2_of_fraction(f).raw.raw, y.raw.raw)});
 #else
@@ -139,7 +139,7 @@ HWY_INLINE hn::Vec<DDI> word(uint64_t x) {
 // c^e for c in [0, 1]; c = m 2^n, m in [2/3, 4/3).
 #if BURNISH_TARGET_IS_AVX3
 HWY_INLINE Doubles exact_power(Doubles c, Doubles e) {
-  constexpr int kNearest = 8;  // of imm8: no scale, to the nearest whole number, no exceptions
+  constexpr int kNearest = 8;  // imm8: no scale, to the nearest whole number, no exceptions
   // c = 0 counts as the least number of a double, whose powers are 0 as floats
   const Doubles n{hn::Vec<DD>{_mm512_getexp_pd(max(c * Doubles(0.75), Doubles(1e-300)).raw.raw)}};
   const Doubles t =

@@ -58,7 +58,7 @@ HWY_INLINE LaneOf<Tag> power(LaneOf<Tag> t, Half) {
   return sqrt(t);
 }
 template <class Tag>
-HWY_INLINE LaneOf<Tag> power(LaneOf<Tag> t, LaneOf<Tag> exponent) {  // of 0 and not-a-number 0
+HWY_INLINE LaneOf<Tag> power(LaneOf<Tag> t, LaneOf<Tag> exponent) {  // 0 for 0 and not-a-number
   const LaneOf<Tag> log(hn::Log(Tag(), t.raw));
   return if_positive(t, LaneOf<Tag>(hn::Exp(Tag(), (exponent * log).raw)));
 }

@@ -38,8 +38,8 @@ SamplerOptions default_sampler_options(bool isotropic) noexcept;
 /// eval/sampler_expression.h gives the formulas as graphs. Valid as long as the sampler or a copy of it.
 struct SamplerTables {
   bool isotropic = true;
-  double sharpness = 0, share = 0, xx = 1, xy = 0, yy = 1;  ///< as in VisibleHalfMap
-  int thetas = 0, phis = 0, rows = 0, columns = 0;          ///< as in SamplerOptions
+  double sharpness = 0, share = 0, xx = 1, xy = 0, yy = 1;  ///< see VisibleHalfMap
+  int thetas = 0, phis = 0, rows = 0, columns = 0;          ///< see SamplerOptions
   double theta_scale = 0, ring_reach = 0;  ///< rings of wo per t / (ring_reach - t), t = tan(theta_o / 2)
   /// Cumulative masses in 1/65536: of the rows of a slice, and of the cells of a row. Slices and rows follow each
   /// other; an entry 0 ends each table.

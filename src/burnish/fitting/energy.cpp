@@ -204,7 +204,7 @@ class Damper {
 
   const FactoredBrdf& brdf_;
   Grid grid_;
-  std::vector<std::vector<double>> gains_;  // as the tables' values; none for a table that stays
+  std::vector<std::vector<double>> gains_;  // laid out like the tables' values; none for a table that stays
   std::ptrdiff_t most_uses_ = 1;
 };
 

@@ -20,7 +20,7 @@ namespace {
 constexpr int kScatteredReweightings = 4;
 // The tolerance for samples of different weights, whose conjugate gradients take longer.
 constexpr double kBackscatterTolerance = 2e-4;
-constexpr double kExpectedWeight = 0.01;  // of a sample of between_incidences
+constexpr double kExpectedWeight = 0.01;  // for a sample of between_incidences
 constexpr std::size_t kExpectedFolds = 5;
 
 // Pairs drawn for one lobe from a source that is a function; an anisotropic one has one dimension more.

@@ -27,11 +27,11 @@ constexpr int kSpareFetches = 4;
 constexpr double kSpareLogCos = 0.8, kSpareAbsolute = 0.1;
 constexpr std::size_t kSpareTexels = 1500;  // from here on absolute errors and the usual smoothness
 constexpr double kVolumeSmooth = 1e-9;
-constexpr double kFewTexelsSmooth = 1e-9;   // of several lobes; few texels are smooth by themselves
+constexpr double kFewTexelsSmooth = 1e-9;   // for several lobes; few texels are smooth by themselves
 constexpr double kHemisphereSmooth = 1e-6;  // few pixels reach each of its many texels
 constexpr double kFarther = 1.1;            // if nodes are farther off than predicted ones
 constexpr int kMoreFetchesOfNodes = 1;      // for a grid beside the line, which colours of dark films need
-constexpr int kSmoothnessFetches = 2;       // of the models that choose it
+constexpr int kSmoothnessFetches = 2;       // for the models that choose it
 
 // Measurements are judged at their nodes; the share of pictures limits errors elsewhere.
 constexpr ErrorTerms kNodeShares{.pictures = 0.5, .dimmed = 0.1, .relative = 1, .log_cos = 1};

@@ -18,8 +18,8 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kMostScattered = 150'000;  // of more samples a part is fitted, to save time
-constexpr double kFrontalShare = 0.1;            // of pixels, see with_frontal_pixels
+constexpr std::size_t kMostScattered = 150'000;  // if there are more samples, a part is fitted, to save time
+constexpr double kFrontalShare = 0.1;            // share of pixels, see with_frontal_pixels
 
 // Pairs that the fit did not see, for the reported error.
 constexpr std::size_t kHeldOutPairs = 20'000;

@@ -13,7 +13,7 @@ struct AreaLightFitOptions {
   std::size_t thetas = 32;  ///< nodes over theta_o of an isotropic BRDF, in [4, 256]
   std::size_t polars = 12;  ///< nodes over theta_o of an anisotropic one, in [4, 256]
   std::size_t quarter = 7;  ///< nodes over a quarter of its azimuths, in [2, 64]
-  int iterations = 40;      ///< of every minimization, >= 1
+  int iterations = 40;      ///< steps of every minimization, >= 1
   bool with_cosine = true;  ///< false: the plain cosine has height zero
   std::function<void(double fraction)> progress = {};  ///< called with rising shares of the work
 };

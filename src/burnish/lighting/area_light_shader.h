@@ -10,7 +10,7 @@ namespace burnish {
 struct AreaLightShader {
   std::string text;       ///< no #version line
   ShaderTexture texture;  ///< RGB, half; linear, clamped to the edge
-  ShaderCost cost;        ///< of the function in the local frame
+  ShaderCost cost;        ///< cost of the function in the local frame
 };
 
 /// Returns source text of reflected() for a quadrilateral, in floats:

@@ -15,7 +15,7 @@ namespace burnish {
 /// A square light as a view sees it.
 struct TrialLamp {
   std::array<Vec3, 5> corners{};  ///< the part above the horizon, in the frame of the mirrored view
-  std::size_t count = 0;          ///< of the corners
+  std::size_t count = 0;          ///< number of corners
   std::size_t size = 0;           ///< index into kTrialSizes
   double weight = 0;              ///< solid angle that this lamp represents, sr
   double cosine = 0;              ///< share of the plain cosine

@@ -20,8 +20,8 @@ namespace {
 constexpr std::string_view kSignature = "!DFMF08FCR";
 constexpr std::size_t kLanes = 64;  // texels whose sums fit in registers
 constexpr std::uint32_t kMaxDirections = 4096, kMaxComponents = 4096, kMaxWidth = 16'384;
-constexpr std::uint32_t kMaxVersion = 100;  // of the head, which has only grown so far
-constexpr double kMinZ = 1e-3;              // of a direction above the surface
+constexpr std::uint32_t kMaxVersion = 100;  // the head's version; it has only grown so far
+constexpr double kMinZ = 1e-3;              // the least z of a direction above the surface
 // The offset that was added before logarithms were taken [btflib, undecorrelate.m: drr_eps].
 constexpr float kLogOffset = 1e-5f;
 

@@ -21,7 +21,7 @@ namespace {
 constexpr int kCaptureVersion = 1, kMaxSide = 16'384;
 constexpr std::uint64_t kMaxJson = std::uint64_t{64} << 20;
 constexpr double kMinHeight = 1e-3;      // z of a unit vector towards a light or view
-constexpr double kUnitTolerance = 0.02;  // of a direction's length
+constexpr double kUnitTolerance = 0.02;  // for a direction's length
 // Noise about zero may make values negative, down to this part of the picture's white.
 constexpr float kMinValue = -0.05f;
 constexpr std::size_t kHeldOut = 12;  // one of so many pictures of a BTF

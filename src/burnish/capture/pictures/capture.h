@@ -16,7 +16,7 @@
 
 namespace burnish {
 
-constexpr std::size_t kCaptureChannels = 3;  ///< of every picture
+constexpr std::size_t kCaptureChannels = 3;  ///< the channels of every picture
 
 /// The place of a light or a view: a unit vector towards it, or a point in the capture's unit of length.
 struct Station {
@@ -47,7 +47,7 @@ struct CapturePicture {
 
 /// The content of `capture.json`.
 struct CaptureForm {
-  int width = 0, height = 0;  ///< of every picture, texels
+  int width = 0, height = 0;  ///< the size of every picture, texels
   /// Sides of the surface, in any unit of length. The surface lies in the plane z = 0 about the origin, with rows
   /// from +y to -y and columns from -x to +x.
   double size_x = 1, size_y = 1;
@@ -194,7 +194,7 @@ class Capture {
   std::filesystem::path path_;
   CaptureForm form_;
   std::shared_ptr<const BtfFile> btf_;       ///< null: a folder
-  std::vector<std::size_t> btf_numbers_;     ///< of the form's pictures
+  std::vector<std::size_t> btf_numbers_;     ///< the BTF's numbers of the form's pictures
   std::shared_ptr<const TexelTable> table_;  ///< null unless the capture has samples
   std::vector<LeftOut> left_out_;
   std::string disagreement_;

@@ -218,7 +218,7 @@ class SceneCamera {
 
  private:
   std::vector<std::uint8_t> seen_from(const Station& station) const {
-    constexpr double kLift = 0.2;  // of a texel
+    constexpr double kLift = 0.2;  // in texels
     const double texel = scene_.size_x / scene_.width, far = 2 * std::hypot(scene_.size_x, scene_.size_y);
     std::vector<std::uint8_t> seen(place(scene_.width, 0, scene_.height));
     for_each_chunk(

@@ -14,12 +14,12 @@ namespace burnish {
 
 /// The state of a surface's fit: its lobes, and the rows whose weights are found.
 struct FitCheckpoint {
-  std::uint64_t key = 0;  ///< of capture and options; a checkpoint with another key is not resumed
+  std::uint64_t key = 0;  ///< hash of capture and options; a checkpoint with another key is not resumed
   std::vector<Capture::LeftOut> damaged;  ///< pictures found damaged since the capture was opened
   std::uint64_t missing_pixels = 0, clipped_pixels = 0;
   double exposure = 1;
   FactoredBrdf lobes;
-  std::vector<float> scales;                  ///< of the lobes' codes
+  std::vector<float> scales;                  ///< scales of the lobes' codes
   int rows = 0;                               ///< the number of finished rows, from the first on
   std::vector<std::vector<std::byte>> codes;  ///< [lobe][row][x] of these rows
   std::vector<float> normals;                 ///< [row][x][2] of these rows, or none
@@ -32,7 +32,7 @@ struct LobesCheckpoint {
   std::uint64_t key = 0;
   int rounds = 0;                               ///< the number of finished rounds
   std::vector<std::vector<double>> log_values;  ///< the tables of LogModel
-  TexelFits fits;                               ///< of the texels of the last round, without costs
+  TexelFits fits;                               ///< fits of the last round's texels, without costs
   /// The normals that all texels begin with, if the last round was fitted to a part of them; otherwise none.
   std::vector<float> normals_of_all;
 };

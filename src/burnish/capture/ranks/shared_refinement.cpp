@@ -62,7 +62,7 @@ void refine_together(FitCrew* crew, LogModel& model, const TrainingSet& set, con
   ChannelRefinements refinements(model, set, options);
   // Channels are independent: each rank has one. With two ranks, each has one channel and half the steps of the
   // third.
-  std::vector<std::vector<std::size_t>> channels{{0}, {1}, {2}};  // of each part
+  std::vector<std::vector<std::size_t>> channels{{0}, {1}, {2}};  // one list a part
   if (crew->ranks() == 2) {
     halve_third_channel(*crew, refinements, options.max_iterations / 2);
     channels = {{0}, {2, 1}};

@@ -109,7 +109,7 @@ class ActiveSet {
   std::array<bool, kMax> free_{};
   std::array<double, kMax> solution_{};
   std::array<std::array<double, kMax>, kMax> factor_;
-  std::array<double, kMax> inverse_;  // of the factor's diagonal
+  std::array<double, kMax> inverse_;  // inverse diagonal of the factor
   std::array<std::size_t, kMax> member_;
 };
 

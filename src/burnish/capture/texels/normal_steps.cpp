@@ -10,7 +10,7 @@ namespace burnish {
 
 namespace {
 
-constexpr float kNormalDelta = 0.01f;  // of finite differences
+constexpr float kNormalDelta = 0.01f;  // step of finite differences
 constexpr double kMaxSlope = 0.95;     // length of a normal's x and y
 constexpr double kMaxStep = 0.15;
 constexpr double kDamping = 1e-2, kEase = 0.4, kHarden = 8;

@@ -8,7 +8,7 @@ namespace burnish {
 
 namespace {
 
-constexpr double kRidge = 1e-6;  // of the mean diagonal
+constexpr double kRidge = 1e-6;  // times the mean diagonal
 // A pixel's error counts as the error of x^(1/2), x = exposure f cos; smaller x are taken as this.
 constexpr float kFloor = 0.004f;
 // Lobes may grow without limit where no pixel holds them. Up to this value their squares stay finite.

@@ -39,7 +39,7 @@ class LobeRows {
   /// to which (dx, dy) is added; null: all are flat.
   void find(const TexelRange& range, const float* normals, float dx, float dy, std::span<float> to);
 
-  std::size_t rows() const noexcept { return setting_.lobes.lobes() * kCaptureChannels; }  ///< of a picture
+  std::size_t rows() const noexcept { return setting_.lobes.lobes() * kCaptureChannels; }  ///< rows a picture
 
  private:
   static constexpr std::size_t kTogether = 4;  // pictures that lobes are evaluated for

@@ -13,7 +13,7 @@ using TexelRow = std::array<float, kTexelLanes>;
 /// One picture and channel of texels: measured values and the values of lobes with weight 1.
 struct TexelPixels {
   std::size_t lobes;
-  const float* model;  ///< of the first lobe; the next one is `stride` floats later
+  const float* model;  ///< the first lobe's; the next one is `stride` floats later
   std::size_t stride;
   const float* value;
 };

@@ -311,7 +311,7 @@ std::pair<std::vector<double>, std::vector<double>> equations_of_lane(const Some
 std::vector<double> least_of_all_subsets(const std::vector<double>& a, const std::vector<double>& b) {
   const std::size_t n = b.size();
   std::vector<double> best(n);
-  double least = 0;  // of all zeros
+  double least = 0;  // the value of all zeros
   for (std::size_t subset = 1; subset < std::size_t{1} << n; ++subset) {
     std::vector<std::size_t> free;
     for (std::size_t i = 0; i < n; ++i)

@@ -35,7 +35,7 @@ class TexelSolver {
   TexelSolver(const FactoredBrdf& lobes, const CaptureForm& form, double exposure);
 
   struct Options {
-    int passes = 3;        ///< of reweighted least squares
+    int passes = 3;        ///< passes of reweighted least squares
     bool normals = false;  ///< find normals too, from those given
     int normal_steps = 4;  ///< Gauss-Newton steps, each followed by a fit of weights
     bool trust = false;    ///< fill TexelFits::trust

@@ -129,7 +129,7 @@ TEST(TexelSolver, TakesClippedPixelsForLowerBounds) {
 }
 
 TEST(TexelSolver, FindsNormals) {
-  const Scene scene(70, 40, true, 0, 0.3);  // as smooth as diffuse surfaces
+  const Scene scene(70, 40, true, 0, 0.3);  // this smooth, like diffuse surfaces
   const TexelSolver solver(scene.lobes, scene.form, 1);
   const TexelFits fits = solver.solve(scene.samples, {}, {.normals = true, .normal_steps = 12});
   double sum = 0;

@@ -23,7 +23,7 @@ constexpr int kRetroAzimuths = 8;
 // high.
 constexpr std::array kRetroNear{radians(1.5), radians(3), radians(5)};
 constexpr double kRetroRingLow = 8.0 / 3, kRetroRingHigh = 16.0 / 3;
-constexpr double kMinTilt = radians(10);  // of the half vector: the highlight lies at the normal
+constexpr double kMinTilt = radians(10);  // the half vector's; the highlight lies at the normal
 constexpr double kMinRatio = 2;
 
 /// Returns the mean over channels and azimuths at some theta_d; nothing if a value is not known.

@@ -12,12 +12,12 @@ namespace burnish {
 
 namespace {
 
-constexpr double kNear = radians(5);  // of wo to wi at samples
-constexpr double kStep_deg = 2.5;     // of theta_i of expected values
+constexpr double kNear = radians(5);  // angle from wo to wi at samples
+constexpr double kStep_deg = 2.5;     // step of theta_i of expected values
 // The least distance of expected values from incidences: in degrees, and as a share of the gap.
 constexpr double kApart_deg = 4, kApart = 0.25;
 constexpr std::array kDistances_deg{0.0, 1.0, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0};
-constexpr int kSides = 5;  // of wo about wi, over half a circle
+constexpr int kSides = 5;  // azimuths of wo about wi, over half a circle
 
 /// Returns the polar angles, in degrees, that have enough samples near wi = wo.
 std::vector<double> incidences_of(const SampleSource& source) {

@@ -141,7 +141,7 @@ TEST(FetchPlan, FrontalPixelsHaveOneDirectionAndStandAmongThePixels) {
     EXPECT_EQ(more.pairs[i].wi, more.pairs[i].wo);
     weight += static_cast<double>(more.weights[i]) / 100;
   }
-  EXPECT_NEAR(weight, 1, 0.05);  // as if spread evenly
+  EXPECT_NEAR(weight, 1, 0.05);  // the weight of evenly spread pixels
   EXPECT_EQ(more.values.size(), 3 * more.size());
   EXPECT_EQ(more.pairs.back().wi, set.pairs.back().wi);
 }

@@ -14,7 +14,7 @@ namespace {
 
 // Successive lobes are split off at these values of tan(theta_d / 2).
 constexpr double kCentres[] = {0.25, 0.6, 0.4, 0.8, 0.15, 0.5, 0.7, 0.3};
-constexpr std::size_t kFirstCentres[] = {0, 1, 2, 4};  // of the first, second, ... start
+constexpr std::size_t kFirstCentres[] = {0, 1, 2, 4};  // for the first, second, ... start
 static_assert(std::size(kFirstCentres) == kLobeStarts);
 
 // The log-linear start is smooth. Functions of the four angles can nearly cancel in many ways. A fit that uses these

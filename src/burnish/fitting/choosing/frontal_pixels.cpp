@@ -10,7 +10,7 @@ namespace burnish {
 
 namespace {
 
-constexpr double kGoldenStep = 0.6180339887498949;  // of azimuths
+constexpr double kGoldenStep = 0.6180339887498949;  // step of azimuths, in turns
 constexpr double kFrontalCosine = 1e-3;
 
 }  // namespace

@@ -30,8 +30,8 @@ ModelSpec at_fewer_nodes(ModelSpec spec, double share);
 /// [0, 1).
 struct ProductForm {
   const char* model;
-  double border = 0;      ///< of p(wo) p(wi) or s(wo) s(wi)
-  double difference = 0;  ///< of all tables of the difference together
+  double border = 0;      ///< share of p(wo) p(wi) or s(wo) s(wi)
+  double difference = 0;  ///< share of all tables of the difference together
 };
 
 /// Lays out the form's tables within the limit's bytes, see model_bytes. Hemispheres of half vectors take what the

@@ -50,7 +50,7 @@ double node_cost(const PlannedFactor& factor, std::size_t channels, std::size_t 
 /// A plan's lobes, whose tables have no nodes yet.
 struct Unsized {
   ModelSpec spec;
-  std::vector<const PlannedFactor*> factors;  ///< of each table
+  std::vector<const PlannedFactor*> factors;  ///< the factor of each table
 };
 
 std::size_t add_table(const PlannedFactor& factor, const std::string& suffix, Unsized& model) {

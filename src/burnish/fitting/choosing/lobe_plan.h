@@ -15,9 +15,9 @@ struct PlannedFactor {
   std::string name;
   TableShape shape = TableShape::line;
   std::vector<Projection> uses;
-  double share = 1;  ///< of its lobe's texels, relative to the other factors; > 0
+  double share = 1;  ///< share of its lobe's texels, relative to the other factors; > 0
   Warp warp;
-  Projection second;  ///< of a grid, which has one use
+  Projection second;  ///< second axis of a grid, which has one use
   Warp second_warp;
   int width = 0;            ///< nodes of a grid along its first axis; 0: as along the second
   bool every_lobe = false;  ///< one table for all lobes

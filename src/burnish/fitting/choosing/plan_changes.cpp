@@ -90,7 +90,7 @@ std::vector<PlanChange> changes_by_projections() {
   return changes;
 }
 
-std::vector<PlanChange> changes_of_coefficients() {  // of projections between directions
+std::vector<PlanChange> changes_of_coefficients() {  // for projections between directions
   std::vector<PlanChange> changes;
   for (const char* name : {"s", "t"})
     for (const double scale : {1.4, 0.7})

@@ -15,7 +15,7 @@ struct ScatteredPlan {
   double smooth = 0;  ///< HomomorphicOptions::smooth
   /// Its held_out_error; none for more than kManySamples samples.
   std::optional<double> error;
-  TableFormat format = TableFormat::half;  ///< of all tables
+  TableFormat format = TableFormat::half;  ///< the format of all tables
 };
 
 /// Chooses the lobe of at most `bytes`, see model_bytes, that predicts held-out samples best. Candidates have the

@@ -115,7 +115,7 @@ TEST(ScatteredPlan, DoesNotDependOnTheNumberOfThreads) {
 /// A matt surface with a lobe about wi = wo, or about the mirror direction.
 struct PeakedBrdf {
   bool back = true;
-  double width = 0.03;  ///< of the lobe, radians
+  double width = 0.03;  ///< the lobe's width, radians
   std::size_t channels() const noexcept { return 1; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {

@@ -48,7 +48,7 @@ class PlanSearch {
 
   SearchResult run(const LobePlan& start) {
     Candidate best = fit(start, nullptr);
-    best = fit(start, &best);  // as many steps as every change gets
+    best = fit(start, &best);  // every change gets as many steps
     result_.trials = {{"start", best.error, true}};
     for (int round = 0; round < kMaxRounds; ++round)
       if (!improve(round, best)) break;
@@ -191,7 +191,7 @@ class PlanSearch {
 
   const TrainingSet& set_;
   const SearchOptions& options_;
-  Heat grey_;  ///< of the mean of the channels
+  Heat grey_;  ///< with the mean of the channels
   SearchResult result_;
   std::thread::id caller_ = std::this_thread::get_id();
   double share_done_ = 0;

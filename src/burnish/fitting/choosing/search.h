@@ -10,7 +10,7 @@ namespace burnish {
 
 struct SearchOptions {
   std::size_t bytes = 2700, texel_bytes = 6;
-  RefineOptions refine;  ///< of every trial
+  RefineOptions refine;  ///< for every trial
   /// Called from the calling thread with the share of the expected work that is done; it never falls.
   std::function<void(double fraction)> progress;
 };

@@ -41,8 +41,8 @@ struct Candidate {
 /// The rules of a competition: each candidate is fitted to one part of the pairs and judged on the other.
 struct Heat {
   TrialParts parts;
-  RefineOptions options;      ///< of the fits
-  ErrorTerms shares;          ///< of the objective that judges them
+  RefineOptions options;      ///< for the fits
+  ErrorTerms shares;          ///< for the objective that judges them
   double worth_of_fetch = 0;  ///< >= 0; a fetch must lower the objective by this share of shares.sum()
 
   /// Returns the objective of a model on the judged part.
@@ -70,7 +70,7 @@ FetchTrial fetch_trial_of(const Candidate& candidate, const ErrorTerms& shares);
 /// Candidates that differ in fetches.
 struct FetchTrials {
   std::vector<FetchTrial> trials;     ///< by rising fetches
-  std::vector<Candidate> candidates;  ///< of these trials
+  std::vector<Candidate> candidates;  ///< the candidates of these trials
 };
 /// For each number of fetches, returns the best of its candidates.
 FetchTrials best_of_each_fetch_count(std::vector<Candidate> candidates, const ErrorTerms& shares);
