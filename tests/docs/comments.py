@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the comments of headers: tests/docs/comments.py [--self-test | FILE...], those of FOLDERS without arguments.
+"""Checks the comments of C++ files: tests/docs/comments.py [--self-test | FILE...], those of FOLDERS without arguments.
 
 - A comment names its subject first: it does not open with one of OPENINGS.
 - No sentence within it opens with one of SENTENCE_OPENINGS.
@@ -13,13 +13,8 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Folders of src/burnish whose headers hold the rules; "." is src/burnish itself. Subfolders are named apart.
-FOLDERS = [
-    ".", "baselines", "book", "eval", "export", "factors", "fitting", "fitting/baselines", "fitting/book",
-    "fitting/numerics", "fitting/one_lobe", "fitting/parametric", "fitting/refinement", "formula", "hardware", "image",
-    "library", "math", "metrics", "parameterization", "power", "reflectance", "reflectance/analytic", "render",
-    "render/gl", "render/light", "render/mesh", "report", "shaders", "surface", "textures"
-]
+# The folders whose C++ files hold the rules.
+FOLDERS = ["apps", "examples", "python/src", "src/burnish", "tests"]
 WORDS = 40
 OPENINGS = re.compile(r"(Of|That|What|Whether|Where|How|Those|As)\b")
 SENTENCE_OPENINGS = re.compile(r"(Of|What|Whether|How)\b")
@@ -75,12 +70,12 @@ def check(text):
                 yield number, f"'{private.group()}' is no word of the field"
 
 
-def headers():
-    """The headers of FOLDERS; throws where a folder has none."""
+def sources():
+    """The C++ files of FOLDERS; throws where a folder has none."""
     for folder in FOLDERS:
-        found = sorted((ROOT / "src/burnish" / folder).glob("*.h"))
+        found = sorted(path for path in (ROOT / folder).rglob("*") if path.suffix in (".h", ".cpp"))
         if not found:
-            raise SystemExit(f"comments.py: src/burnish/{folder} holds no header: mend FOLDERS")
+            raise SystemExit(f"comments.py: {folder} holds no source: mend FOLDERS")
         yield from found
 
 
@@ -101,10 +96,10 @@ def self_test():
 def main():
     if "--self-test" in sys.argv[1:]:
         return self_test()
-    paths = [pathlib.Path(name).resolve() for name in sys.argv[1:]] or list(headers())
+    paths = [pathlib.Path(name).resolve() for name in sys.argv[1:]] or list(sources())
     wrong = [f"{path.relative_to(ROOT)}:{number}: {message}" for path in paths
              for number, message in check(path.read_text(encoding="utf-8"))]
-    print("\n".join(wrong) if wrong else f"comments of {len(paths)} headers, nothing wrong")
+    print("\n".join(wrong) if wrong else f"comments of {len(paths)} files, nothing wrong")
     return 1 if wrong else 0
 
 
