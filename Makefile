@@ -206,6 +206,7 @@ docs-check:
 	@tests/docs/comments.py --self-test
 	@tests/docs/comments.py
 	@docs/api.py --check
+	@tests/notices/spdx.py
 
 # Builds the site of docs/ with its own packages from PyPI. site-check looks for violations of axe's rules in a browser.
 site:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installs THIRD_PARTY_NOTICES and the SBOM of a package, written by notices/notices.py. Without Python they are left
 # out.
 find_package(Python3 QUIET COMPONENTS Interpreter)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installs the further files of packages, besides programs, headers and libraries, and makes the Debian packages (`make
 # deb`).
 

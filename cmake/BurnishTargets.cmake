@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Sets the flags that all targets of the project share. Call it once for each target.
 function(burnish_target name)
   target_compile_features(${name} PUBLIC cxx_std_20)

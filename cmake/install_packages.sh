@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # install_packages.sh LIST... installs the missing Debian packages among those that the files name, and names them
 # first. Where none is missing it needs neither root nor apt. Where it cannot install, it names the missing packages and
 # goes on. A machine may have the libraries elsewhere, and CMake names the first that it does not find.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes docs/api.md, what burnish/burnish.h declares, from the comments of its headers: docs/api.py [--check].
 
 With --check it writes nothing, and exits with 1 if the page is not as the headers have it."""

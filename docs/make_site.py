@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Builds the site from the Markdown of this repository: docs/make_site.py [--out FOLDER] [--stage-only] [--no-notebooks].
 
 - Pages lie in the site as in the repository, without the folder docs; README.md is the first page.

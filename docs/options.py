@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes docs/guide/fit-options.md, all options of a fit, from what the command line says of them:
 docs/options.py BURNISH [--check].
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # demo.sh BURNISH OUT [INPUT] takes a measurement to two positive textures and prints their accuracy. Without INPUT, a
 # virtual goniometer first measures an anisotropic satin.
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """One sphere in every program that exports are written for, beside our own renderer's.
 
     examples/export_pictures.py build/release/apps/burnish/burnish paint.exr --measurement paint.bsdf \

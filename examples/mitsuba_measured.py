@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Renders a measurement of the RGL database by Mitsuba's own `measured` plug-in and as a burnish model.
 
     examples/mitsuba_measured.py vch_silk_blue_rgb.bsdf --budget 2700 -o comparison.png

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Fits a model's tables to a rendered picture by gradient descent through Mitsuba 3.
 
     examples/mitsuba_optimize.py -o recovered.exr

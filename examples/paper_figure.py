@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A figure for a paper: a BRDF, its factored model, and where they differ.
 
     examples/paper_figure.py                                # a brushed metal, built in

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # A BC6H texture, made for values above 1, is cut off at 1 and rounded to bytes by two of three readers.
 #
 # Versions: Pillow 13.0.0, texture2ddecoder 1.0.6, OpenImageIO 3.2.2.0.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # ml_dtypes rounds doubles to bfloat16 twice, and so to the wrong neighbour; numpy's float16 is rounded once.
 #
 # Versions: ml_dtypes 0.6.0, numpy 2.4.6.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # colour-science's thin films are wrong for metals and absorbing films unless light falls straight on them.
 #
 # Versions: colour-science 0.4.7, tmm 0.2.0 (the package of the paper that colour's documentation cites).

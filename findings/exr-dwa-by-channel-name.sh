@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # OpenEXR's DWAA keeps a FLOAT channel exactly if it is called "lobe", and as lossy half floats if it is called "R".
 #
 # Version: OpenEXR 3.5.3 (Python package of the Academy Software Foundation).

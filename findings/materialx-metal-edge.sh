@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # A metal of OpenPBR with specular_weight 0.5 gets twice as bright at its edge from one patch release to the next.
 #
 # Versions: MaterialX 1.39.4 and 1.39.5, both for documents of version 1.39.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # MaterialX's GLSL without an environment uses a uniform that it does not declare: no material compiles.
 #
 # Version: MaterialX 1.39.5 (1.39.4 is the same).

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # MaterialX's validator passes nodes that no library defines; only the generator of shaders finds them missing.
 #
 # Version: MaterialX 1.39.5, with its own libraries loaded.

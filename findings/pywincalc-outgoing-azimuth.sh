@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # pywincalc cannot find the patch of two fifths of the outgoing directions, in any Klems basis.
 #
 # Version: pywincalc 3.3.1 (Windows-CalcEngine of Berkeley Lab).

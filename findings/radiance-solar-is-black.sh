@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Radiance reads a window file that has a Solar band alone as black on both sides, without a word.
 #
 # Version: pyradiance 1.3.1 (Radiance 6).

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # scipy's RBFInterpolator with neighbors= jumps between a goniometer's samples, by 2 % of a BRDF's value.
 #
 # Versions: scipy 1.17.1, numpy 2.4.6.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # One Radiance picture (.hdr) has three linear values, depending on who reads it.
 #
 # Versions: pyradiance 1.3.1 (Radiance 6), opencv-python-headless 5.0.0.93, OpenImageIO 3.2.2.0, three 0.187.0.

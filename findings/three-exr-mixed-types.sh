@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # three.js reads an OpenEXR file whose colours have two types as numbers of 1e16, without a word.
 #
 # Versions: three 0.187.0, OpenEXR 3.5.3 (which writes the file, and reads it back as it was).

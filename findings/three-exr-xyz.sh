@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # three.js shows an OpenEXR file of X, Y and Z as the grey of its Y.
 #
 # Versions: three 0.187.0, OpenEXR 3.5.3 (which writes the file).

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # three.js rounds halves towards zero, so that every float texture gets darker.
 #
 # Versions: three 0.187.0, @petamoriken/float16 3.9.3 (Math.f16round and Float16Array as ECMAScript 2025 has them).

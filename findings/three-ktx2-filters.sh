@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # three.js's loader of KTX2 filters a texture by its format: half floats by nearest texel, blocks linearly, BC6H not.
 #
 # Versions: three 0.187.0, ktx-parse 2.0.0 (which writes the files).

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs a script of Yosys by the package pyosys: PYTHON hw/pyosys_run.py -q -p 'COMMAND; COMMAND', as the program yosys
 does. hw/synthesize.sh calls it where YOSYS names it."""
 import sys

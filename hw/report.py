@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes docs/results/hardware.md: hw/report.py BURNISH SYNTHESIS SPHERE, the latter two the output of hw/synthesize.sh and of
 `hw/verify.sh sphere`. The text is hw/hardware.md.in; what stands in it as @name@ is measured here, at the commit that
 BURNISH_COMMIT says."""

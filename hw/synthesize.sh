@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Synthesizes units of hw/ with Yosys and nextpnr: hw/synthesize.sh BURNISH SCRATCH [UNIT]..., by default all.
 # One line of key=value figures a unit: HX8K and UP5K (placed and routed, seed 1, options' defaults), Xilinx 7, gates,
 # standard cells of sky130hd and gf180 (7 tracks, 5 V). Blinn's front end comes last.

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Checks of the hardware: hw/verify.sh STEP BURNISH LIBRARIES SCRATCH
 #   lint        verilator --lint-only -Wall on every unit
 #   simulate    Verilator against the C++ model, 20,000 vectors a unit with random pauses

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs the Python package into build/venv and runs its tests against the command line of the release build. With
 # --skip-offline it says so and succeeds where PyPI cannot be reached.
 set -eu

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # sdist.sh FOLDER makes the source of the Python package. pip builds it with the packages that `make deps` installs.
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # wheel.sh FOLDER [PYTHON...] makes wheels that hold all they need except the C library, for a glibc as new as this
 # machine's. Each Python makes one wheel. A wheel of 3.12 or newer serves all later Pythons (stable ABI), an older one
 # its own Python alone. Without names it uses python3, and the first newer Python here where python3 is older than 3.12.

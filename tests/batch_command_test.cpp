@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These tests run `burnish batch` as a program: exit codes, messages, and the script for Slurm.
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These tests run `burnish book` and `fit --book` as programs.
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These tests check that all verbs of the command line use the same words and rules.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These tests use the manual pages and completions of `burnish describe` as man and the shells do.
 #include <algorithm>
 #include <filesystem>

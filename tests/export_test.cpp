@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These tests open the files of `burnish export` in other programs.
 
 #include <algorithm>

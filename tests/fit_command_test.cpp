@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These tests check that `burnish fit` writes and prints the library's results.
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These tests check that bad input of every kind gets one clear error and leaves no output.
 
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These tests check what `burnish render` draws and what it refuses.
 
 #include <cstdlib>

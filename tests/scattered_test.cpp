@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These tests fit real scattered samples within given budgets.
 
 #include <cmath>

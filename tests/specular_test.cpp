@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These tests run the `specular` verb as a user does.
 #include <cstdlib>
 #include <string>

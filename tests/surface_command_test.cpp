@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These tests run `burnish measure --surface` and `fit-surface` as users do.
 
 #include <algorithm>

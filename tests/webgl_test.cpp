@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These tests run generated GLSL ES in a browser: WebGL2 draws into floats, which are read back.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // burnish-mpi fit-surface does the same as `burnish fit-surface`, with the ranks that mpirun or srun starts.
 #include <exception>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares the accuracy of models with that of other methods at the same number of bytes.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws spheres lit by square lamps with tables of area lights, and with those of a fitted GGX. Compares them with
 // samples of the lamp.
 #include <algorithm>

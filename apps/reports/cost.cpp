@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the cost and the error of an evaluation: fits by bytes and fetches, and the usual alternatives.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "cost_sources.h"
 
 #include <burnish/io/open_source.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the milliseconds a frame of models by `burnish fit` and of models that they are compared with.
 #include <algorithm>
 #include <deque>

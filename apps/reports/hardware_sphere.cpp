@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws a sphere shaded by a unit of hw/, pixel by pixel.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // burnish_reports NAME [OPTIONS] OUTPUT_FOLDER measures the figures of the pages in docs/results and writes the pages.
 #include <cstdlib>
 #include <exception>

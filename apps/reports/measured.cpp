@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares models with measured values that they have not seen: nodes, incidences, another scan. Measures the light
 // that noise adds.
 #include <array>

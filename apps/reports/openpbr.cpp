@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares the OpenPBR fit with the best of many random starts, and reports glTF materials fitted to the same sources.
 #include <algorithm>
 #include <cstdint>

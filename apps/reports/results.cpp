@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the fit of one lobe: scattered samples of an anisotropic GGX, measurements, and a table of the MERL size.
 #include <algorithm>
 #include <array>

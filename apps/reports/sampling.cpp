@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares ways of drawing directions on the RGL materials: weights, variance under environments, time.
 #include <algorithm>
 #include <cmath>

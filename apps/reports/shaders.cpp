@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the precision of generated shaders on this machine's OpenGL and in a browser, their cost, and environment
 // lighting.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the cost of a surface against a uniform model, and the accuracy of its mip levels.
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JavaScript calls these functions: a request as JSON and bytes in, a reply as JSON and blobs out. One call runs at a
 // time.
 #include <cstdint>

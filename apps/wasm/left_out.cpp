@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These parts of the library are left out of this build, while other parts call them. A caller gets an Error that says
 // so.
 #include <burnish/error.h>

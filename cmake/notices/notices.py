@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes what a package says of other people's work in it:
 
     notices.py {wheel,deb,npm} --version V --notices FILE --sbom FILE [--python FOLDER]

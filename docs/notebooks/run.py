@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Executes the notebooks of this folder: docs/notebooks/run.py [--out FOLDER] [NAME...], all of them without a name.
 
 Needs what `pip install '.[notebooks]'` installs. Each runs in a folder of its own, FOLDER/NAME (build/notebooks), and

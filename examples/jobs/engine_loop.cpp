@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // This is the frame of an engine that shades on the processor. A material is loaded once. Each frame then collects the
 // pairs of directions that its lights need, evaluates all of them in one call, and adds them up.
 //

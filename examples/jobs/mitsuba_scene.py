@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A Mitsuba scene with a burnish material: mitsuba_scene.py paint.burnish [-o scene.png] [--samples N].
 
 The material is on a sphere under a window and a dim sky. Needs `pip install burnish mitsuba`. Prints the mean

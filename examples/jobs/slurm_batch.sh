@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Fits a whole library of materials on a cluster: slurm_batch.sh MEASUREMENTS LIBRARY [TASKS]
 #
 # MEASUREMENTS is a folder, or a list with an argument of `burnish fit` a line. LIBRARY is a folder that all nodes see.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts a measurement to another format with burnish::io: convert_file FILE FORMAT RESULT. The format is one of
 // kConvertFormats. Prints what the result loses.
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws a material by ray casting with burnish::render: draw_sphere MATERIAL RESULT.png. The material is anything that
 // open_source accepts.
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Uses a model as a renderer does, with burnish::eval alone: engine MODEL.burnish. Reads the file and lights a sphere
 // with it, a row of pixels at a time. Writes the picture to engine.ppm in the current folder. Prints the time from the
 // program's start to the first value, and the time of a million values.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fits materials one after the other into a folder with a page and a table of figures, with burnish::library:
 // fit_library FOLDER MATERIAL... Each material is anything that open_source accepts.
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fits a program's own BRDF with burnish::fit, without reading a file.
 #include <cstdio>
 #include <exception>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Holds the simulated units to their C++ model, bit for bit. The module `bench` and the list of its units
 // come from `burnish hw generate`.
 //   bench sample COUNT UNIT...   COUNT seeded vectors a unit; values offered and taken with random pauses

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What a call from Python costs over C++: seconds for N direction pairs, one thread, and ratios.
 
 The C++ figures are FactoredEvaluator::eval on the very same arrays, timed inside the extension without Python; ratios

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """BRDFs as a few small positive tables: read, fit, evaluate, sample and compare.
 
     paint = burnish.open_source("paint.binary")

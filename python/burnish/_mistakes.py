@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Explains in one line why a call fits no signature."""
 
 import ast

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The BSDF plugin `burnish` of Mitsuba 3: a factored BRDF from its native file, or OpenPBR.
 
     import mitsuba as mi

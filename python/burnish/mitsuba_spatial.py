@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The BSDF plugin `burnish_spatial` of Mitsuba 3: a surface from its .burnish file, over meshes' texture coordinates.
 
     import burnish.mitsuba

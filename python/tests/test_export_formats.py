@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is exported is valid to the libraries of the formats' owners."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plugin `burnish_spatial` against the library."""
 
 import json

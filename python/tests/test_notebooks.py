@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The notebooks of the documents run from an empty folder and have what they say."""
 
 import pathlib

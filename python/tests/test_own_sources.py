@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sources of one's own: samples in arrays, functions of NumPy."""
 
 import subprocess

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// The public door: what these headers declare is what programs may rely on; docs/api.md shows it at a glance. They

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Compares every part of window systems' files with Radiance: python3 tests/bsdf/radiance.py BURNISH FILE.xml...
 
 Needs PyPI's pyradiance (1.3.1), whose bsdf.query is Radiance's own evaluator; without it the script says so and ends

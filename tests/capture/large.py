@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """large.py BURNISH CAPTURE BOOK FOLDER [--times K]: weights alone of a large surface, beside the disk.
 
 Repeats the texels of a capture (uncompressed OpenEXR, lights and views as directions, as `burnish measure --surface` makes

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """How good fits of surfaces are: tests/capture/rgl.py BURNISH [--sides 64 256] [--alone]
 [--misregistered SHARE ...] [--keep FOLDER].
 

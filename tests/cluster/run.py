@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A batch on a real Slurm of two nodes on this machine: tests/cluster/run.py BURNISH [--if-there] [--seed S]
 [--materials N] [--least TIMES] [--mpi BURNISH_MPI].
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Opens pages of a site in Chromium, light, dark and as wide as a phone: tests/docs/axe.sh SITE [PICTURES]. Ends with 1
 # where axe finds a violation, a page is wider than the screen, or a page asks another server for something. Pictures of
 # all pages go to PICTURES. Says so and succeeds where node, npm, Chromium or npm's registry cannot be reached.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks the Markdown files of this repository: tests/docs/check.py [FILE...], all of them without arguments.
 
 - Prose, also that of templates (.md.in), is wrapped at 120 columns; tables, code and lines without a space before

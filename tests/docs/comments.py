@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks the comments of C++ files: tests/docs/comments.py [--self-test | FILE...], those of FOLDERS without arguments.
 
 - A comment names its subject first: it does not open with one of OPENINGS.

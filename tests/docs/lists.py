@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks lists of names that programs cannot read from each other: tests/docs/lists.py BURNISH.
 
 What the command line reads and writes, exports to and knows by name has to be in the documents, the page and the

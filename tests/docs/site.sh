@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Builds the site into build/site and tests its search: tests/docs/site.sh [--skip-offline] [--no-notebooks]. Its
 # packages are installed from PyPI into build/venv-site. With --skip-offline it says so and succeeds where PyPI cannot
 # be reached. Without node it does not test the search, and says so too.

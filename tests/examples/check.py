@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs the examples by job: tests/examples/check.py BURNISH [JOB...] [--engine-loop PROGRAM] [--out FOLDER].
 
 Each job of JOBS does what its first lines tell a reader to do, on a small model, and its answers are compared with the

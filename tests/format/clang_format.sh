@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # clang_format.sh (-i | --check) FILE... formats files, or checks their format, by clang-format 14. Other versions
 # differ in dozens of places. A system's own version 14 serves; otherwise it comes from PyPI, into build/format. Without
 # either, -i fails, and --check says SKIPPED and succeeds.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <burnish/capture/ranks/fit_checkpoint.h>
 #include <burnish/testing/checkpoints.h>
 

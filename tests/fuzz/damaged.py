@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """damaged.py BURNISH FOLDER...: damaged files through the command line.
 
 Takes the files of the folders (seeds that build/fuzz/tests/fuzz/make_seeds writes, real measurements) and some that

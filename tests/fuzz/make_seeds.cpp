@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // make_seeds DIR writes DIR/NAME/NAME, a small valid file for each fuzzed reader. It also writes all of them to
 // DIR/source.
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <burnish/factors/model_file.h>
 
 #include "fuzz_reader.h"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # run.sh [SECONDS] builds every fuzzer and runs each for SECONDS (60) of the processor, as many at a time as there are
 # cores. It prints the number of inputs of each. A find ends the run and leaves its input in build/fuzz/finds. Corpora
 # grow in build/fuzz/corpus. BUILT=DIR runs the programs of a folder instead of building them.

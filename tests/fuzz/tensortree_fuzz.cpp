@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <burnish/io/tensor_tree_xml.h>
 
 #include "fuzz_reader.h"

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks what includes what in src/burnish: tests/includes/check.py [--self-test].
 
 - A foundation includes only what stands before it in FOUNDATIONS.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program outside this repository: it runs the README's example and compares it with the definition.
 #include <cmath>
 #include <cstdio>

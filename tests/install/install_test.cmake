@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installs BUILD under SCRATCH and compiles each installed header alone. Then it configures, builds and runs the
 # consumer beside this file, which holds the example of SOURCE/README.md. Then it checks that each part of the library
 # is complete without outer parts, and that its program of examples/programs works.

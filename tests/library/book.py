@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """How far a book carries a library: tests/library/book.py BURNISH [--folds N] [--every N] [--counts 5 20 100]
 [--draws N] [--only KIND] [--keep FOLDER].
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Kills batches at random moments and takes their folder away: tests/library/kill.py BURNISH [--kills N] [--seed S].
 
 A library of analytic materials and damaged files is fitted undisturbed. Then it is fitted again, killed by SIGKILL

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A library of 1,000 beside its fits one by one: tests/library/scale.py BURNISH [--count N] [--cells C] [FIT OPTIONS].
 
 Of COUNT materials 5 % are damaged files, 25 % analytic, the rest MERL files of C x C x 2 C cells: twenty stand-ins of

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Fits a small surface with 1, 2 and 4 ranks: tests/mpi/run.py BURNISH BURNISH_MPI [--kills N] [--side N] [--time [CAPTURE]].
 
 The file has to be that of `burnish fit-surface` to the byte, also where a rank is killed at a random moment and the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The surface that tests of ranks fit: a scene for `burnish measure --surface`, and options of the fit."""
 
 SCENE = {"version": 1, "materials": ["ggx:alpha_x=0.2,alpha_y=0.2,f0=0.6,kd=0.1", "ggx:alpha_x=0.5,alpha_y=0.5"],

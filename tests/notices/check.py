@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks what packages say of other people's work: check.py [--python FOLDER] [PACKAGE...].
 
 Without packages: writes the notices and the SBOM of each kind from this system, and checks that every part has its

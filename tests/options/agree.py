@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Compares what the command line, Python and the page's package say of wrong combinations of fit options.
 
     tests/options/agree.py BURNISH [--python build/venv/bin/python] [--package build/studio/package] [--table]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Holds the outputs of the command line to the bit: their SHA-256 against hashes.txt, for the commands in commands.txt.
 
 Each command runs twice, once on one processor and once on all, which must give the same bits. What depends on

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Reference values of the tests in src/burnish/reflectance/analytic and of gltf_material_test.cpp.
 
 Prints each value with the name of the model it belongs to. The models are written from their papers in terms of

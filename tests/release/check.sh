@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # check.sh FOLDER installs each package of FOLDER where nothing else of burnish is: a .deb, a .whl, the Python package's
 # source, a .tgz of npm. It runs the demo there, or a first fit where there is no command line, and prints what each
 # takes. A missing package is a fault. Each package must be below its limit.

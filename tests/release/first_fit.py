@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What someone does first with the Python package: fits a paint and evaluates the model."""
 import importlib.metadata
 

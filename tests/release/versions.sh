@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # versions.sh [FOLDER] checks that all files that state a version state the same one, and so do the names of FOLDER's
 # artefacts.
 set -euo pipefail

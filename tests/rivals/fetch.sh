@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Brings the libraries that benchmarks of the power compare with into build/rivals: the headers of Highway 1.4.0 and, on
 # Debian, SLEEF 3.9.0. Run it as tests/rivals/fetch.sh. HIGHWAY_GIT in the environment names another copy of Highway's
 # repository. A library that cannot be had is named and left out; the benchmarks then run without it.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Holds the list of what sanitizers leave out to the tests that there are: tests/sanitized/check.py PROGRAM... [--self-test].
 
 Each line of left_out.txt has to name tests of these programs of GoogleTest tests, as their filters do, and no line what

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Scores what is made of scattered samples against the BRDFs that they were drawn from, beside what others make of them.
 
     tests/scattered/score.py BURNISH FILE.bsdf... [--counts 300,3000,30000] [--page docs/results/scattered.md]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Puts every generated file of ten models, in every language, through real compilers.
 
 tests/shaders/compile.py BURNISH [--keep FOLDER] fits ten small models, exports each in four ways (the hardware's

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compiles shaders `main` with Slang's library, fragment shaders or, for CUDA, kernels: slang_compile LIBRARY TARGET
 // FILE... It writes FILE.TARGET, and prints Slang's message for each file that it refuses. It exits with 1 if Slang
 // refused a file. compile.py builds and runs it. Slang's objects live until the process ends.

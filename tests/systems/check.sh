@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # check.sh SUITE [--only COMMAND]... makes a bare Debian (bookworm, trixie) by debootstrap and does in it what the
 # README says. It installs make and git, then runs `make demo` and `make test` in a clean checkout of HEAD. For each
 # command it prints how it ended, its seconds, the megabytes of packages and of the build that it added, and what it

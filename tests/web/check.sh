@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Opens exports in ktx-parse, three.js, Babylon.js, Chromium and the glTF validator. Compares tangent frames with
 # MikkTSpace. Opens the page of a library, and the page in build/studio where `make studio` made it. The tools are
 # installed from npm into build/web. With --skip-offline it says so and succeeds where npm, Chromium or the registry

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the files that a page opens in tests/web/studio.mjs. They are a small valid one of every format, and pictures
 // of light in every OpenEXR compression that the studio reads. Beside each picture stands OpenEXR's reading of it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // burnish_mesh_frames MESH VERTICES prints the corners of triangles for tests/web/frames.mjs, 15 floats each. They are
 // position, normal, texture coordinates, the tangent and side that finish_mesh computes from these, and the renderer's
 // tangent. For built-in meshes the renderer's tangent is that of the exact surface.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Tests the package of `make studio` beside the command line: sizes, then tests/web/package.test.mjs.
 set -eu
 cd "$(dirname "$0")/../.."

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // These functions of the library are not used by pages: surfaces as OpenEXR, maps in blocks, and area lights.
 #include <burnish/error.h>
 #include <burnish/image/block_compression.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // This header adds C++20 that the library uses and that libc++ 13 lacks, which Debian 12 has with Emscripten. It has

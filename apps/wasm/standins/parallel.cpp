@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // This file stands in for math/parallel.cpp. Chunks run on this thread and on those of burnish_start_threads. Without
 // shared memory there are none of those. Results are the same for every number of threads.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // This file stands in for image/png.cpp. Its encoder is that of stb_image_write, which needs no other library.
 #include <string_view>
 

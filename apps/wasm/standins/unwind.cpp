@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // This file stands in for libunwind where the compiler is older than LLVM 15. The compiler then writes the landing pad
 // of an exception into one place for all threads. libunwind with threads reads a place of each thread, so no catch by
 // type finds its exception. Here both use the one place. Therefore only one thread at a time may catch by type: the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // This header stands in for Zstandard. Its frames hold the input uncompressed, which every reader of the format

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SeparableBrdf and DgfBrdf, what they promise as Brdfs.
 
 #include <algorithm>

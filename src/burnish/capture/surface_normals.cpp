@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <burnish/capture/ranks/shared_work.h>
 #include <burnish/capture/surface_normals.h>
 #include <burnish/capture/texels/texel_starts.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Evaluations a second of factored BRDFs, compared with tables and a formula: one thread, three channels, random
 // directions. There are so many directions that large tables are read from memory, not from the cache.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <burnish/eval/interleaved.h>
 
 #define HWY_TARGET_INCLUDE "burnish/eval/interleaved.cpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Per-target include: vectors of floats with operators, for formulas written once for all number types.
 #if defined(BURNISH_EVAL_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_EVAL_LANES_INL_H_

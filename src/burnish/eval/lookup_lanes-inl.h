@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Per-target include: (bi)linear interpolation of tables for a vector of positions. Intrinsics stay here.
 #if defined(BURNISH_EVAL_LOOKUP_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_EVAL_LOOKUP_LANES_INL_H_

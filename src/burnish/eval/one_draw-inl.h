@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Per-target include: the formulas of visible_half-inl.h for one direction, in plain floats, which the compiler
 // contracts to multiply-adds, and searches that compare eight edges at a time.
 #if defined(BURNISH_EVAL_ONE_DRAW_INL_H_) == defined(HWY_TARGET_TOGGLE)

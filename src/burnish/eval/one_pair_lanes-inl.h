@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Per-target include: one pair of directions at a time. A batch has a direction in each lane; here the lanes are
 // projections, positions and channels. The formulas and their order are the same, so the bits are too.
 #if defined(BURNISH_EVAL_ONE_PAIR_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)

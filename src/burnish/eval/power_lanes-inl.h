@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Per-target include: the formulas of power/forms-inl.h over vectors of floats.
 #if defined(BURNISH_EVAL_POWER_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_EVAL_POWER_LANES_INL_H_

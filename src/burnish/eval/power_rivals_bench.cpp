@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Highway 1.4's own powers for comparison. Only its headers are used, in a namespace of their own, because the
 // library is built with the system's version of Highway.
 #include "power_rivals_bench.h"

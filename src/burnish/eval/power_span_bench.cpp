@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Speed and error of every way to compute c^e, in one run. Answers are checked against the double power before
 // timing. The printed table uses the shortest of the repetitions and gives three ratios for each way: its speed over
 // that of the baseline (named by BURNISH_BENCH_BASELINE, by default highway_fastpow_false); its time in multiply-adds

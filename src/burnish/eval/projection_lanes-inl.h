@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Per-target include: the formulas of parameterization/projection-inl.h over vectors of floats.
 #if defined(BURNISH_EVAL_PROJECTION_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_EVAL_PROJECTION_LANES_INL_H_

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <burnish/eval/sampler_expression.h>
 
 namespace burnish {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // This benchmark draws directions with their densities on one thread, and counts them per second. It compares them
 // with evaluation of the same model and with the baselines. The directions wo are random, so that table rows are not
 // already in the cache.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Per-target include: the loop over spans that the kernels share. A benchmark's plainest kernel uses the same loop.
 #if defined(BURNISH_EVAL_VECTOR_LOOP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_EVAL_VECTOR_LOOP_INL_H_

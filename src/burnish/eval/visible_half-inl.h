@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // TabulatedSampler's formulas, each written once. There is no include guard. The file is included in a namespace of
 // its own for double, and again in one per instruction set for vectors of floats. So every copy is compiled with that
 // set's flags.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Per-target include: one lobe of a volume over theta_h, theta_d and phi_d times a line over theta_h, the form of
 // fits with two fetches, in one pass. One pair uses lanes across angles; many pairs use a lane a pair. Both use the
 // same formulas in the same order, so the bits are the same.

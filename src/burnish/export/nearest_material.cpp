@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <burnish/export/nearest_material.h>
 #include <burnish/fitting/parametric/gltf_fit.h>
 #include <burnish/fitting/parametric/grain.h>

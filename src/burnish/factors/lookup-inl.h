@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps a position along a table's axis to nodes and weights. Each formula is written once, for the number types and
 // with the functions of parameterization/projection-inl.h, and
 //   whole(x)   the integer part of x >= 0, as a number

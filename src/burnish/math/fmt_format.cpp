@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Instantiates what fmt's own src/format.cc compiles, so that fmt's headers need not do so in every file.
 #include <fmt/format-inl.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Half floats by arithmetic: without the table that Imath's library holds, so that what includes this links nothing.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Highway as it is used here, for kernels compiled once for each set of instructions. No include guard: each time the
 // compiler comes by, it is for another set. A file of kernels starts with
 //   #define HWY_TARGET_INCLUDE "burnish/FOLDER/FILE.cpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // The sets of instructions that kernels are compiled for; before any header of Highway.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Defines the functions of Highway's library that its headers call, so that evaluation links no other library. They
 // report the sets of instructions that the processor has, and the chosen set. Kernels are compiled for the sets of
 // highway_targets.h alone, so no other sets are distinguished.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Projections and warps, each written once. There is no include guard. The file is included in a namespace of its own
 // for double (the definition) and for nodes of expression graphs (text, costs, graphs for other programs). It is
 // included again in one per instruction set for vectors of floats, so that every copy is compiled with that set's

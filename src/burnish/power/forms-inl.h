@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The approximations of c^e, each written once. No include guard: power.cpp includes this file in its own
 // namespace, the SIMD kernels include it again in one namespace per instruction set, so that every copy is
 // compiled with that set's flags.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Directions at which the tests of analytic models evaluate them. The tests compare with closed forms at special

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Files as the University of Bonn writes them, for tests and fuzzers.

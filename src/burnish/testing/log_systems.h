@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Helpers of the tests of one-lobe solvers: log-linear problems, and the distance of a solution from the minimum.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // A small valid file of every format, for tests of bad input and for the fuzzers.

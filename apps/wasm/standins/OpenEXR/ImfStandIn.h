@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // These classes stand in for OpenEXR. They have the part that writes models, tables and slices, and reads models. Parts

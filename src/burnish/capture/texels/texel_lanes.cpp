@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <burnish/capture/texels/texel_lanes.h>
 #include <burnish/surface/spatial_brdf.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <burnish/fitting/choosing/order_tables.h>
 #include <burnish/reflectance/statistics.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // In place of LAPACK and BLAS where BURNISH_EIGEN_LAPACK is on, and in WebAssembly: the routines that fitting/numerics
 // calls, with Eigen. Always the lower triangle, as they are called. Compiled for any processor, without its widest
 // vectors, so fits take longer than with OpenBLAS.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Per-target include: a block of pairs by the lobes of a model.
 #if defined(BURNISH_FITTING_LOBE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_FITTING_LOBE_LANES_INL_H_

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <burnish/fitting/refinement/picture_loss_lanes.h>
 
 #define HWY_TARGET_INCLUDE "burnish/fitting/refinement/picture_loss_lanes.cpp"

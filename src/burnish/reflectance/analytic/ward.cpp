@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <burnish/reflectance/analytic/microfacet_distribution.h>
 #include <burnish/reflectance/analytic/ward.h>
 

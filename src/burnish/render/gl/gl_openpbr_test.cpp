@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OpenPBR against the shader that MaterialX generates for open_pbr_surface and against our own, run on the OpenGL at
 // hand.
 #include <algorithm>

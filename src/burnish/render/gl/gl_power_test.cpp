@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The emitted GLSL of the specular family, run on the OpenGL at hand.
 #include <cmath>
 

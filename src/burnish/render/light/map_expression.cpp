@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <burnish/render/light/map_expression.h>
 #include <burnish/render/light/prefiltered_formula.h>
 
