@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <burnish/error.h>
@@ -23,7 +24,9 @@ constexpr double kUpright = 1e-12;    // theta_h below this is rounding
 constexpr double kGuessWeight = 0.1;  // weight of values where nothing was measured
 
 constexpr std::size_t kNeighbours = KrigedNodes::kNeighbours;
-constexpr std::size_t kCentresTogether = 64;     // a thread at a time
+constexpr std::size_t kCentresTogether = 64;  // a thread at a time
+constexpr std::size_t kNodesACentre = 4;      // from kEnoughCentres centres on
+constexpr std::size_t kEnoughCentres = 1 << 11;
 constexpr std::size_t kSolvedNumbers = 1 << 24;  // at most, of all centres: spectra have many channels
 constexpr double kCalibrationPrior = 2;          // number of nodes with the expected deviation, as a prior
 constexpr double kMostSurprise = 16;             // largest standardized square of one node
@@ -32,7 +35,7 @@ constexpr double kLeastPivot = 1e-9;             // of the variance
 
 // Blocks of nodes whose likelihood is maximized.
 constexpr std::size_t kNearBlocks = 16, kNearNodes = 64;
-constexpr std::size_t kFewNearBlocks = 6, kSpreadNodes = 160;
+constexpr std::size_t kFewNearBlocks = 6, kSpreadNodes = 320;
 constexpr TreePoint kNear{3, 1, 0.5, 0}, kNearAnisotropic{1.5, 1.5, 1, 1};
 
 // Cells along theta_h, theta_d and phi_d. There is a gap where nodes touch none of a cell's corners.
@@ -71,6 +74,7 @@ Logarithms logarithms_of(const MeasuredNodes& nodes) {
     if (!(least_cosine(pair) > KrigedNodes::kLeastCosine)) continue;
     result.node.push_back(static_cast<std::uint32_t>(i));
     result.measured.places.push_back(place_of(pair.wi, pair.wo, nodes.samples.isotropic));
+    result.measured.grazing.push_back(grazing_measure(pair.wi, pair.wo));
     result.measured.variances.push_back(1 / (nodes.weights[i] * weight_of(pair)));
     for (std::size_t c = 0; c < channels; ++c) {
       const double f = std::max(0.0, nodes.samples.at(i)[c]);
@@ -150,7 +154,7 @@ TreePoint place_of(Vec3 wi, Vec3 wo, bool isotropic) noexcept {
 }
 
 KrigedNodes::KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covariance, bool few_pairs)
-    : isotropic_(nodes.samples.isotropic), covariance_(covariance) {
+    : isotropic_(nodes.samples.isotropic), few_pairs_(few_pairs), covariance_(covariance) {
   Logarithms all = logarithms_of(nodes);
   mean_ = std::move(all.mean);
   largest_ = std::move(all.largest);
@@ -165,6 +169,7 @@ KrigedNodes::KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covari
   for (const std::size_t i : tree_.order()) {
     node_.push_back(all.node[i]);
     measured_.places.push_back(all.measured.places[i]);
+    measured_.grazing.push_back(all.measured.grazing[i]);
     measured_.variances.push_back(noise_variance(covariance, all.measured.variances[i]));
     for (std::size_t c = 0; c < channels; ++c) measured_.logs.push_back(all.measured.logs[i * channels + c]);
   }
@@ -179,36 +184,78 @@ TreePoint KrigedNodes::scaled(TreePoint place) const noexcept {
 namespace {
 
 using Floats = Eigen::Array<float, static_cast<int>(kNeighbours), 1>;
-using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
-                             static_cast<int>(kNeighbours), static_cast<int>(kNeighbours)>;
-using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, static_cast<int>(kNeighbours), 1>;
+using Square = Eigen::MatrixXd;
+using Column = Eigen::VectorXd;
 
-/// Coordinates of the neighbours, axis by axis.
-using Places = std::array<Floats, LogCovariance::kAxes>;
+}  // namespace
+
+/// Coordinates of the neighbours, axis by axis, and their grazing measures.
+struct KrigingPlaces {
+  std::array<Floats, LogCovariance::kAxes> at;
+  Floats grazing;
+};
+
+/// The same of one place.
+struct KrigingPlace {
+  std::array<float, LogCovariance::kAxes> at;
+  float grazing;
+
+  KrigingPlace(const TreePoint& place, double grazing_measure) noexcept
+      : grazing(static_cast<float>(grazing_measure)) {
+    for (std::size_t k = 0; k < at.size(); ++k) at[k] = static_cast<float>(place[k]);
+  }
+};
+
+namespace {
+
+void put(KrigingPlaces& places, std::size_t i, const KrigingPlace& place) noexcept {
+  for (std::size_t k = 0; k < place.at.size(); ++k) places.at[k][static_cast<Eigen::Index>(i)] = place.at[k];
+  places.grazing[static_cast<Eigen::Index>(i)] = place.grazing;
+}
+
+/// Returns sqrt(3) times the distances of a place from the first n of some places, by inverse lengths along each axis.
+Floats distances(const std::array<double, LogCovariance::kAxes>& inverse_length, const KrigingPlaces& places,
+                 const KrigingPlace& place, Eigen::Index n) noexcept {
+  Floats r;
+  r.head(n).setZero();
+  for (std::size_t k = 0; k < LogCovariance::kAxes; ++k)
+    if (inverse_length[k] > 0)
+      r.head(n) += ((places.at[k].head(n) - place.at[k]) * static_cast<float>(inverse_length[k])).square();
+  r.head(n) = static_cast<float>(LogCovariance::kRoot3) * r.head(n).sqrt();
+  return r;
+}
 
 /// Returns the covariances of a place with the first n of some places: level^2 + sum over terms of spread^2 (1 +
-/// sqrt(3) r) exp(-sqrt(3) r) [Rasmussen 2006, eq. 4.17].
-Floats prior_covariances(const LogCovariance& covariance, const Places& at, const std::array<float, 4>& place,
-                         Eigen::Index n) noexcept {
+/// sqrt(3) r) exp(-sqrt(3) r) [Rasmussen 2006, eq. 4.17], and near the horizon the grazing term.
+Floats prior_covariances(const LogCovariance& covariance, const KrigingPlaces& places,
+                         const KrigingPlace& place, Eigen::Index n) noexcept {
   Floats sum;
   sum.head(n).setConstant(static_cast<float>(covariance.level * covariance.level));
   for (std::size_t t = 0; t < LogCovariance::kTerms; ++t) {
-    Floats r;
-    r.head(n).setZero();
-    for (std::size_t k = 0; k < LogCovariance::kAxes; ++k)
-      if (covariance.inverse_length[t][k] > 0)
-        r.head(n) +=
-            ((at[k].head(n) - place[k]) * static_cast<float>(covariance.inverse_length[t][k])).square();
-    r.head(n) = static_cast<float>(LogCovariance::kRoot3) * r.head(n).sqrt();
+    const Floats r = distances(covariance.inverse_length[t], places, place, n);
     const auto spread2 = static_cast<float>(covariance.spread[t] * covariance.spread[t]);
     sum.head(n) += spread2 * (1 + r.head(n)) * (-r.head(n)).exp();
+  }
+  if (place.grazing > 0) {
+    const Floats r = distances(covariance.grazing_inverse_length, places, place, n);
+    const float by = static_cast<float>(covariance.grazing * covariance.grazing) * place.grazing;
+    sum.head(n) += by * places.grazing.head(n) * (1 + r.head(n)) * (-r.head(n)).exp();
   }
   return sum;
 }
 
-std::array<float, 4> floats_of(const TreePoint& place) noexcept {
-  return {static_cast<float>(place[0]), static_cast<float>(place[1]), static_cast<float>(place[2]),
-          static_cast<float>(place[3])};
+/// Replaces the lower triangle of K by L, column by column.
+void factorize_with_least_pivot(Square& matrix, double least) noexcept {
+  const Eigen::Index n = matrix.rows();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double pivot = std::sqrt(std::max(matrix(j, j), least));
+    matrix(j, j) = pivot;
+    const Eigen::Index below = n - j - 1;
+    if (below == 0) continue;
+    matrix.col(j).tail(below) /= pivot;
+    for (Eigen::Index k = j + 1; k < n; ++k)
+      matrix.col(k).tail(n - k) -= matrix(k, j) * matrix.col(j).tail(n - k);
+  }
 }
 
 }  // namespace
@@ -217,13 +264,13 @@ std::array<float, 4> floats_of(const TreePoint& place) noexcept {
 struct KrigedNodes::Neighbourhood {
   std::size_t count = 0;
   std::array<std::uint32_t, kNeighbours> nodes;
-  Places at;
+  KrigingPlaces places;
   Square factor;
 
   /// Returns the covariances of a place with these nodes.
-  Column towards(const LogCovariance& covariance, const TreePoint& place) const noexcept {
+  Column towards(const LogCovariance& covariance, const KrigingPlace& place) const noexcept {
     const auto n = static_cast<Eigen::Index>(count);
-    return prior_covariances(covariance, at, floats_of(place), n).head(n).cast<double>().matrix();
+    return prior_covariances(covariance, places, place, n).head(n).cast<double>().matrix();
   }
   /// Replaces x by K^-1 x.
   void solve(Column& x) const noexcept {
@@ -238,43 +285,42 @@ KrigedNodes::Neighbourhood KrigedNodes::neighbourhood(const TreePoint& scaled_pl
   // The nearest nodes are sorted, so that sums have one order however the tree is walked.
   std::array<KdTree::Neighbour, kNeighbours> found;
   Neighbourhood near;
-  near.count = tree_.nearest(scaled_place, found, takes);
+  const std::size_t most = few_pairs_ ? kFewPairsNeighbours : kNeighbours;
+  near.count = tree_.nearest(scaled_place, std::span(found).first(most), takes);
   for (std::size_t i = 0; i < near.count; ++i) near.nodes[i] = static_cast<std::uint32_t>(found[i].place);
   std::sort(near.nodes.begin(), near.nodes.begin() + static_cast<std::ptrdiff_t>(near.count));
-  for (std::size_t i = 0; i < near.count; ++i) {
-    const std::array<float, 4> place = floats_of(measured_.places[near.nodes[i]]);
-    for (std::size_t k = 0; k < place.size(); ++k) near.at[k][static_cast<Eigen::Index>(i)] = place[k];
-  }
+  const auto place_of_node = [&](std::uint32_t node) {
+    return KrigingPlace(measured_.places[node], measured_.grazing[node]);
+  };
+  for (std::size_t i = 0; i < near.count; ++i) put(near.places, i, place_of_node(near.nodes[i]));
 
   // The lower triangle of K holds the covariances of each node with those before it, and on the diagonal its variance
   // with the noise.
   const auto n = static_cast<Eigen::Index>(near.count);
   near.factor.resize(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const std::uint32_t node = near.nodes[static_cast<std::size_t>(i)];
-    const Floats row = prior_covariances(covariance_, near.at, floats_of(measured_.places[node]), i);
-    near.factor.row(i).head(i) = row.head(i).cast<double>().matrix().transpose();
-    near.factor(i, i) = covariance_.variance() + measured_.variances[node];
-  }
+  const auto fill = [&] {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const std::uint32_t node = near.nodes[static_cast<std::size_t>(i)];
+      const Floats row = prior_covariances(covariance_, near.places, place_of_node(node), i);
+      near.factor.row(i).head(i) = row.head(i).cast<double>().matrix().transpose();
+      near.factor(i, i) = covariance_.variance(measured_.grazing[node]) + measured_.variances[node];
+    }
+  };
+  fill();
 
-  // K is factorized in place, column by column. The least pivot keeps rounding from making it indefinite.
-  const double least = kLeastPivot * covariance_.variance();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const double pivot = std::sqrt(std::max(near.factor(j, j), least));
-    near.factor(j, j) = pivot;
-    const Eigen::Index below = n - j - 1;
-    if (below == 0) continue;
-    near.factor.col(j).tail(below) /= pivot;
-    for (Eigen::Index k = j + 1; k < n; ++k)
-      near.factor.col(k).tail(n - k) -= near.factor(k, j) * near.factor.col(j).tail(n - k);
-  }
+  // K = L L^T. Where rounding made K indefinite, a least pivot factorizes it anyway.
+  Eigen::LLT<Eigen::Ref<Square>, Eigen::Lower> in_place(near.factor);
+  if (in_place.info() == Eigen::Success) return near;
+  fill();
+  factorize_with_least_pivot(near.factor, kLeastPivot * covariance_.variance());
   return near;
 }
 
 // Computes K^-1 y of each centre's neighbours, with which all pairs near the centre are predicted.
 void KrigedNodes::solve_centres() {
   // Every step-th node in the tree's order is a centre: so centres are spread as the nodes are.
-  const std::size_t most = std::min(kCentres, kSolvedNumbers / (kNeighbours * measured_.channels) + 1);
+  const std::size_t enough = std::clamp(measured_.size() / kNodesACentre, kEnoughCentres, kCentres);
+  const std::size_t most = std::min(enough, kSolvedNumbers / (kNeighbours * measured_.channels) + 1);
   const std::size_t step = (measured_.size() - 1) / most + 1;
   std::vector<TreePoint> places;
   for (std::size_t i = 0; i < measured_.size(); i += step) places.push_back(tree_.points()[i]);
@@ -365,14 +411,13 @@ bool KrigedNodes::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   centres_.nearest(scaled(place), nearest, [](std::size_t) { return true; });
   const std::size_t centre = nearest[0].place;
   const std::size_t count = std::min(kNeighbours, measured_.size());
-  Places at;
+  KrigingPlaces places;
   for (std::size_t i = 0; i < count; ++i) {
-    const TreePoint& node = measured_.places[near_[centre * count + i]];
-    for (std::size_t k = 0; k < node.size(); ++k)
-      at[k][static_cast<Eigen::Index>(i)] = static_cast<float>(node[k]);
+    const std::uint32_t node = near_[centre * count + i];
+    put(places, i, KrigingPlace(measured_.places[node], measured_.grazing[node]));
   }
-  const Floats towards =
-      prior_covariances(covariance_, at, floats_of(place), static_cast<Eigen::Index>(count));
+  const Floats towards = prior_covariances(covariance_, places, KrigingPlace(place, grazing_measure(wi, wo)),
+                                           static_cast<Eigen::Index>(count));
   for (std::size_t c = 0; c < f.size(); ++c) {
     double log = 0;
     for (std::size_t i = 0; i < count; ++i)
@@ -390,7 +435,7 @@ void KrigedNodes::eval_from(Vec3 wi, Vec3 wo, const std::function<bool(std::size
   const TreePoint place = place_of(wi, wo, isotropic_);
   const Neighbourhood near = neighbourhood(scaled(place), [&](std::size_t at) { return takes(node_[at]); });
   // The weights K^-1 k do not depend on the channel; each prediction is their product with the logarithms.
-  Column weights = near.towards(covariance_, place);
+  Column weights = near.towards(covariance_, KrigingPlace(place, grazing_measure(wi, wo)));
   near.solve(weights);
   for (std::size_t c = 0; c < f.size(); ++c) {
     double log = 0;
@@ -404,11 +449,12 @@ LogUncertainty KrigedNodes::uncertainty(Vec3 wi, Vec3 wo) const noexcept {
   if (!(wi.z > 0 && wo.z > 0)) return {};
   const TreePoint place = place_of(wi, wo, isotropic_);
   const Neighbourhood near = neighbourhood(scaled(place), [](std::size_t) { return true; });
-  const Column towards = near.towards(covariance_, place);
+  const double grazing = grazing_measure(wi, wo);
+  const Column towards = near.towards(covariance_, KrigingPlace(place, grazing));
   Column weights = towards;
   near.solve(weights);
   // The predictive variance is k(x, x) - k^T K^-1 k [Rasmussen 2006, eq. 2.26]; a reading adds its noise.
-  const double variance = std::max(0.0, covariance_.variance() - weights.dot(towards));
+  const double variance = std::max(0.0, covariance_.variance(grazing) - weights.dot(towards));
   const double noise = noise_variance(covariance_, 1 / weight_of({wi, wo}));
   const double by = calibration({wi, wo});
   return {std::sqrt(by * variance), std::sqrt(by * (variance + noise))};
@@ -420,13 +466,15 @@ void KrigedNodes::covariances_with(const DirectionPair& one, std::span<const Dir
   // 2.24].
   const TreePoint place = place_of(one.wi, one.wo, isotropic_);
   const Neighbourhood near = neighbourhood(scaled(place), [](std::size_t) { return true; });
-  Column weights = near.towards(covariance_, place);
+  const KrigingPlace here(place, grazing_measure(one.wi, one.wo));
+  Column weights = near.towards(covariance_, here);
   near.solve(weights);
-  Places at_one;
-  for (std::size_t k = 0; k < place.size(); ++k) at_one[k].setConstant(static_cast<float>(place[k]));
+  KrigingPlaces at_one;
+  put(at_one, 0, here);
   for (std::size_t i = 0; i < others.size(); ++i) {
-    const TreePoint other = place_of(others[i].wi, others[i].wo, isotropic_);
-    const auto prior = static_cast<double>(prior_covariances(covariance_, at_one, floats_of(other), 1)[0]);
+    const KrigingPlace other(place_of(others[i].wi, others[i].wo, isotropic_),
+                             grazing_measure(others[i].wi, others[i].wo));
+    const auto prior = static_cast<double>(prior_covariances(covariance_, at_one, other, 1)[0]);
     covariances[i] = prior - weights.dot(near.towards(covariance_, other));
   }
 }

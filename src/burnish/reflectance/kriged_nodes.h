@@ -31,7 +31,8 @@ class KrigedNodes {
  public:
   static constexpr double kFloor = 1e-3;        ///< 1/sr, as in the figure `relative`
   static constexpr double kLeastCosine = 0.02;  ///< least cosine of both directions of a node that is used
-  static constexpr std::size_t kNeighbours = 64, kCentres = 1 << 15, kCalibrating = 32;
+  static constexpr std::size_t kNeighbours = 192, kFewPairsNeighbours = 128;
+  static constexpr std::size_t kCentres = 1 << 13, kCalibrating = 32;
 
   /// Throws Error where none of the nodes has both cosines above kLeastCosine.
   /// With `few_pairs` nothing is prepared for sharing, and eval takes each pair's own neighbours.
@@ -69,7 +70,7 @@ class KrigedNodes {
   double value_of(double log, std::size_t channel) const noexcept;
   TreePoint scaled(TreePoint place) const noexcept;
 
-  bool isotropic_ = true;
+  bool isotropic_ = true, few_pairs_ = false;
   LogCovariance covariance_;
   KdTree tree_;                      // places scaled by the lengths of the term that sees all
   LogMeasurements measured_;         // in the tree's order

@@ -61,6 +61,43 @@ TEST(KrigedNodes, PredictAnisotropicSources) {
   EXPECT_LT(mean_log_error(source, kriged(samples)), 0.03);
 }
 
+/// The mean of ln(f / f^) where one cosine is 0.02, of f = (cos theta_i cos theta_o)^-exponent measured from a cosine of
+/// 0.06 on.
+double rise_missed_at_horizon(double exponent, double grazing) {
+  const auto rise = [exponent](Vec3 wi, Vec3 wo) { return 0.1 * std::pow(wi.z * wo.z, -exponent); };
+  Samples samples{.channels = 1, .isotropic = true};
+  Pcg32 random(5);
+  while (samples.size() < 1500) {
+    const DirectionPair pair{spherical_direction(std::acos(random.uniform()), 0),
+                             spherical_direction(std::acos(random.uniform()), kTwoPi * random.uniform())};
+    if (std::min(pair.wi.z, pair.wo.z) < 0.06) continue;
+    samples.pairs.push_back(pair);
+    samples.values.push_back(rise(pair.wi, pair.wo));
+  }
+  LogCovariance covariance(true);
+  covariance.grazing = grazing;
+  const KrigedNodes function(measured_nodes(samples), covariance);
+  double sum = 0;
+  constexpr int kPlaces = 12;
+  for (int i = 0; i < kPlaces; ++i) {
+    const Vec3 wi = spherical_direction(std::acos(0.02), 0),
+               wo = spherical_direction(radians(30), kTwoPi * i / kPlaces);
+    std::vector<double> f(1);
+    function.eval(wi, wo, f);
+    sum += std::log(rise(wi, wo) / f[0]) / kPlaces;
+  }
+  return sum;
+}
+
+TEST(KrigedNodes, GoOnRisingTowardsTheHorizonAsMeasured) {
+  const double with = rise_missed_at_horizon(0.8, LogCovariance(true).grazing),
+               without = rise_missed_at_horizon(0.8, 0);
+  EXPECT_LT(std::abs(with), 0.4);
+  EXPECT_GT(without, 2 * std::abs(with));
+  // What does not rise stays level.
+  EXPECT_NEAR(rise_missed_at_horizon(0, LogCovariance(true).grazing), 0, 0.02);
+}
+
 /// A goniometer that stands at a few incidences, one of which may be left out.
 Samples of_few_incidences(BrdfRef source, int skipped) {
   Samples samples{.channels = 3, .isotropic = true};

@@ -14,6 +14,7 @@ namespace burnish {
 struct LogMeasurements {
   std::size_t channels = 0;
   std::vector<TreePoint> places;
+  std::vector<double> grazing;    ///< grazing_measure of each place; none: 0
   std::vector<double> logs;       ///< less the mean of each channel, [place][channel]
   std::vector<double> variances;  ///< of the noise, in units of noise^2
 

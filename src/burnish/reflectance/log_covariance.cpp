@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
 #include <burnish/reflectance/log_covariance.h>
 
 namespace burnish {
@@ -12,20 +15,37 @@ constexpr Lengths kIsotropicLengths{{{0.4, 0, 0, 0}, {0.7, 0.7, 0, 0}, {0.4, 0.9
 constexpr Lengths kAnisotropicLengths{{{0.4, 0.4, 0, 0}, {0, 0, 0.7, 0.7}, {0.5, 0.5, 0.9, 0.9}}};
 constexpr double kUsualLevel = 2, kUsualSpread = 1.5, kUsualNoise = 0.06;
 
+// Exponents of the cosines: most BRDFs lie between f alone (0) and f cos (1) being finite at the horizon.
+constexpr double kUsualGrazing = 0.5;
+constexpr std::array<double, LogCovariance::kAxes> kIsotropicGrazing{1, 1.4, 3, 0},
+    kAnisotropicGrazing{1, 1, 1.4, 1.4};
+constexpr double kGrazingCosine = 0.2, kLeastGrazingCosine = 0.005;
+
 }  // namespace
 
-LogCovariance::LogCovariance(bool isotropic) noexcept : level(kUsualLevel), noise(kUsualNoise) {
+LogCovariance::LogCovariance(bool isotropic) noexcept
+    : level(kUsualLevel), grazing(kUsualGrazing), noise(kUsualNoise) {
   spread.fill(kUsualSpread);
   const auto& lengths = isotropic ? kIsotropicLengths : kAnisotropicLengths;
   for (std::size_t t = 0; t < kTerms; ++t)
     for (std::size_t k = 0; k < kAxes; ++k)
       if (lengths[t][k] > 0) inverse_length[t][k] = 1 / lengths[t][k];
+  const auto& of_exponent = isotropic ? kIsotropicGrazing : kAnisotropicGrazing;
+  for (std::size_t k = 0; k < kAxes; ++k)
+    if (of_exponent[k] > 0) grazing_inverse_length[k] = 1 / of_exponent[k];
 }
 
 double LogCovariance::variance() const noexcept {
   double sum = level * level;
   for (const double of_term : spread) sum += of_term * of_term;
   return sum;
+}
+
+double grazing_measure(Vec3 wi, Vec3 wo) noexcept {
+  const auto of = [](double cosine) {
+    return cosine < kGrazingCosine ? std::log(kGrazingCosine / std::max(cosine, kLeastGrazingCosine)) : 0;
+  };
+  return of(wi.z) + of(wo.z);
 }
 
 }  // namespace burnish

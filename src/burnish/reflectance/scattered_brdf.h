@@ -11,7 +11,7 @@
 namespace burnish {
 
 /// The rules that make a function of scattered samples.
-/// - kriged: the best linear prediction of ln(f + 1e-3) from the 64 nearest samples (KrigedNodes), under the covariance
+/// - kriged: the best linear prediction of ln(f + 1e-3) from the nearest samples (KrigedNodes), under the covariance
 ///   that predicts unseen samples best (choose_covariance). At the directions of a sample it is the sample. The first
 ///   evaluation makes it: that one takes longer, and allocates.
 /// - mean_in_half_difference: the mean of the samples near a direction pair, with weights exp(-100 distance^2), among
