@@ -377,12 +377,14 @@ double KrigedNodes::surprise_of(const Neighbourhood& near, std::uint32_t node,
 /// Computes the factor of variances near each centre: the mean of the nearest standardized squares, bounded against
 /// outliers, with a prior of 1.
 void KrigedNodes::calibrate(std::span<const double> surprises) {
+  // Fewer centres than nodes lie farther apart. Half as many reach about as far.
+  const std::size_t calibrating = centres_.size() < measured_.size() ? kCalibrating / 2 : kCalibrating;
   calibration_.resize(centres_.size());
   for_each_chunk(centres_.size(), kCentresTogether, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       std::array<KdTree::Neighbour, kCalibrating> found;
-      const std::size_t count =
-          centres_.nearest(centres_.points()[c], found, [](std::size_t) { return true; });
+      const std::size_t count = centres_.nearest(centres_.points()[c], std::span(found).first(calibrating),
+                                                 [](std::size_t) { return true; });
       std::sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
       double sum = kCalibrationPrior;
       for (std::size_t i = 0; i < count; ++i) sum += std::min(surprises[found[i].place], kMostSurprise);

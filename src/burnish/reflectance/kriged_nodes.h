@@ -49,7 +49,7 @@ class KrigedNodes {
   /// Returns standard deviations >= 0 of ln(f + 1e-3) at a pair of directions: of the function, and of an
   /// instrument's reading there, noise included. Both are 0 below the horizon.
   /// The covariance gives them, times a calibration: the root of the mean squared leave-one-out residual of the
-  /// kCalibrating nearest centres, over the variance that the covariance expects. One covariance serves all
+  /// nearest centres, at most kCalibrating, over the variance that the covariance expects. One covariance serves all
   /// directions; the calibration adapts it to where a source is rougher.
   LogUncertainty uncertainty(Vec3 wi, Vec3 wo) const noexcept;
 
