@@ -76,8 +76,8 @@ inline nb::object numbers_of(nb::handle value, std::string_view name, bool singl
   }
   const auto kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
   if (std::string_view("iuf").find(kind) == std::string_view::npos)
-    return refuse(kind == "c"   ? std::string("complex ones")
-                  : kind == "b" ? std::string("truth values")
+    return refuse(kind == "c"   ? std::string("complex numbers")
+                  : kind == "b" ? std::string("booleans")
                                 : std::string(nb::str(value.type().attr("__name__")).c_str()));
   return array.attr("astype")(single ? "f4" : "f8", nb::arg("copy") = false);
 }

@@ -47,7 +47,9 @@ OpenedModel* model_of(const MaterialBook& book, const std::string& name) {
 }  // namespace
 
 void bind_book(nb::module_& m) {
-  nb::class_<MaterialBook>(m, "Book", "What a library of materials shares, and a few bytes a material.")
+  nb::class_<MaterialBook>(
+      m, "Book",
+      "Tables that the materials of a library share, and the weights of each material in a few bytes.")
       .def_prop_ro("names",
                    [](const MaterialBook& book) {
                      std::vector<std::string> names;
@@ -64,7 +66,8 @@ void bind_book(nb::module_& m) {
                                 counted(book.shared_bytes(), "byte"), book.bytes_a_material());
            })
       .def("__len__", [](const MaterialBook& book) { return book.materials().size(); })
-      .def("__getitem__", &model_of, nb::arg("name"), nb::rv_policy::take_ownership, "A material as a model.")
+      .def("__getitem__", &model_of, nb::arg("name"), nb::rv_policy::take_ownership,
+           "Returns a material as a Model.")
       .def(
           "write",
           [](const MaterialBook& book, const std::filesystem::path& path) {
@@ -76,16 +79,17 @@ void bind_book(nb::module_& m) {
       [](const std::filesystem::path& path) {
         return std::make_shared<const MaterialBook>(parse_book(read_file(path)));
       },
-      nb::arg("path"), "Reads what Book.write and `burnish book` write.");
+      nb::arg("path"), "Reads a book from the file that Book.write or `burnish book` wrote.");
   m.def("book", &make, nb::arg("materials"), nb::kw_only(), nb::arg("bytes") = BookOptions().bytes,
         nb::arg("bytes_a_material") = BookOptions().bytes_a_material, nb::arg("seed") = BookOptions().seed,
         nb::arg("shared") = nb::none(),
-        "Makes a book as `burnish book` does, for fit(..., book=).\n\n"
-        "materials: a folder, a list's name, or arguments of open_source, isotropic, of one channel or "
-        "three; the\n"
-        "first that cannot be in a book is raised. bytes: of what they share, at most. bytes_a_material: "
-        "weights, at\n"
-        "most. shared: a Book whose shared part serves, only weights are found.");
+        "Makes a book as `burnish book` does, for fit(..., book=).\n"
+        "\n"
+        "materials: a folder, the path of a list, or arguments of open_source. All materials are isotropic\n"
+        "and have one channel or three. The first material that cannot be in a book raises an Error.\n"
+        "bytes: the most bytes of the tables that all materials share.\n"
+        "bytes_a_material: the most bytes of the weights of one material.\n"
+        "shared: a Book whose tables are reused, so that only weights are fitted.");
 }
 
 }  // namespace burnish::python

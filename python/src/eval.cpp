@@ -149,17 +149,18 @@ double time_eval(const OpenedModel& model, const Array<const float>& wi, const A
 }
 
 constexpr const char* kEvalDoc =
-    "f_r in 1/sr, without the cosine, zero below the horizon; of a transmission f_t, whose wo lies below: z "
-    "< 0.\n\n"
-    "wi, wo: unit vectors to the light and the viewer, (N, 3) or (3,), both float32 or both float64, any\n"
-    "strides, read where they lie; normal (0, 0, 1). Lists and integers are taken too, as the other "
-    "argument's\n"
-    "type or as float64, and arrays of other packages (DLPack, __array__) as NumPy's. Returns (N, channels) "
-    "of the same type, or fills and returns `out`. float64 is the\n"
-    "definition; float32 of a model is the fast evaluator. nan stands where a measurement knows nothing and\n"
-    "where wi or wo is no unit vector to 1 %.\n"
-    "Rows (order='C') and planes of components (order='F') cost the same; of planes the result is planes.\n"
-    "Uses all threads; other Python threads go on meanwhile.";
+    "Returns f_r in 1/sr, without the cosine; zero below the horizon. A transmission gives f_t, and its\n"
+    "wo lies below the surface: z < 0.\n"
+    "\n"
+    "wi, wo: unit vectors to the light and to the viewer; the normal is (0, 0, 1). Both have shape (N,\n"
+    "3) or (3,), both are float32 or both float64. Any strides are read in place. Lists and integers\n"
+    "are converted to the type of the other argument, or to float64. Arrays of other packages (DLPack,\n"
+    "__array__) are taken like NumPy's.\n"
+    "Returns (N, channels) of the same type, or fills and returns `out`. float64 is evaluated by the\n"
+    "definition, float32 of a model by the fast evaluator. The value is nan where a measurement has\n"
+    "none, and where wi or wo is not a unit vector to 1 %.\n"
+    "Rows (order='C') and planes of components (order='F') are equally fast. Planes give planes.\n"
+    "The call uses all threads. Other Python threads run meanwhile.";
 
 }  // namespace
 

@@ -86,7 +86,8 @@ nb::dict exported_analytic(const std::string& spec, const Names& to,
   const Source source = open_source(spec, {});
   const auto* const brdf = std::get_if<AnalyticBrdf>(&source.brdf);
   if (!brdf)
-    throw Error(spec + ": expected an analytic BRDF, found another; open_source or fit make a Model of it");
+    throw Error(spec +
+                ": expected an analytic BRDF, found another BRDF; make a Model of it by open_source or fit");
   const ExportOptions options{.to = targets_of(to), .name = name ? *name : name_of(spec), .cells = cells};
   if (!power && brdf->model().name == "openpbr") return handed_out(export_openpbr(*brdf, options), folder);
   const std::optional<PowerMethod> method = power ? std::optional(power_method(*power)) : std::nullopt;
@@ -110,21 +111,24 @@ void bind_exports(nb::module_& m) {
               "binding: int | None = None, set: int | None = None, space: int | None = None, "
               "appended: bool = False) -> dict[str, bytes]"),
       fmt::format(
-          "What `burnish export` writes, by the files' names, the last one the manifest NAME.json; into the "
-          "folder\n"
-          "too where one is given.\n\n"
-          "to: one or several of {}.\nShaders bring their textures along. "
-          "name: of files,\nfunctions and MaterialX's nodes; by default the source's, \"paint\" for "
-          "\"paint.binary\". exact: shaders weigh texels themselves, in floats. half: they multiply "
-          "them in half precision\n(mediump, min16float, half, f16), within 1 %; \"cpp\" stays single. mips: "
-          "KTX2 "
-          "with levels. "
-          "compressed: KTX2\nwith Zstandard. cells: of \"mdl\", along each polar angle. environment: "
-          "\"sun\", "
-          "\"studio\" or an OpenEXR picture of all "
-          "directions, "
-          "whose light {}\nshow. binding, set, space: numbers of textures in shaders, as `burnish export "
-          "--binding`, `--set` and\n`--space` have them. appended: shaders go behind others in one file.",
+          "Returns the files that `burnish export` writes, as bytes by file name. The last one is the\n"
+          "manifest NAME.json. The files are also written into the folder if there is one.\n"
+          "\n"
+          "to: one or several of {}. Shaders come with their textures.\n"
+          "name: the name of files, functions and MaterialX nodes. By default it is the source's: \"paint\" "
+          "for\n"
+          "\"paint.binary\".\n"
+          "exact: shaders interpolate texels themselves, in floats.\n"
+          "half: shaders multiply texels in half precision (mediump, min16float, half, f16), within 1 %;\n"
+          "\"cpp\" stays in single precision.\n"
+          "mips: KTX2 files have mip levels.\n"
+          "compressed: KTX2 files are compressed by Zstandard.\n"
+          "cells: the cells of \"mdl\" along each polar angle.\n"
+          "environment: \"sun\", \"studio\" or an OpenEXR picture of all directions. It lights exports to "
+          "{}.\n"
+          "binding, set, space: the numbers of textures in shaders, as `burnish export --binding`, `--set`\n"
+          "and `--space` take them.\n"
+          "appended: shaders can be appended to other shaders in one file.",
           quoted_names(export_target_names()), targets_that(shows_environment))
           .c_str());
   m.def("export", &exported_analytic, nb::arg("spec"), nb::arg("to"), nb::arg("folder") = nb::none(),
@@ -132,13 +136,15 @@ void bind_exports(nb::module_& m) {
         nb::arg("power") = nb::none(),
         nb::sig("def export(spec: str, to: str | list[str], folder: str | os.PathLike | None = None, *, "
                 "name: str | None = None, cells: int = 90, power: str | None = None) -> dict[str, bytes]"),
-        "OpenPBR, such as \"openpbr:coat_weight=1\" or a file of it, as shaders or \"three\", \"babylon\", "
-        "\"materialx\",\n\"usda\", \"mdl\", \"gltf\", \"rgl\" or \"html\". cells: of \"mdl\", along each "
-        "polar angle.\n"
-        "Phong's or Blinn's model, such as \"blinn_phong:exponent=60\", as shaders or \"html\". power: how "
-        "it is\n"
-        "computed, a member of the specular family; by default the cheapest that is never one of 255 levels "
-        "off.");
+        "Exports an analytic BRDF.\n"
+        "OpenPBR, such as \"openpbr:coat_weight=1\" or a file of it, becomes shaders or \"three\", "
+        "\"babylon\",\n"
+        "\"materialx\", \"usda\", \"mdl\", \"gltf\", \"rgl\" or \"html\".\n"
+        "Phong's or Blinn's model, such as \"blinn_phong:exponent=60\", becomes shaders or \"html\".\n"
+        "\n"
+        "cells: the cells of \"mdl\" along each polar angle.\n"
+        "power: the method that computes the specular power, a member of the specular family. The default\n"
+        "is the cheapest method that is never one of 255 levels off.");
 }
 
 }  // namespace burnish::python

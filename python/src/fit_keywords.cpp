@@ -42,9 +42,9 @@ Json json_of(const std::string& name, nb::handle value) {
     const double number = nb::cast<double>(nb::float_(value));
     return std::isfinite(number) ? Json(number) : Json(nb::cast<std::string>(nb::str(value)));
   }
-  throw nb::type_error(
-      fmt::format("{}: expected a value that an option takes, found {}", name, nb::repr(value).c_str())
-          .c_str());
+  throw nb::type_error(fmt::format("{}: expected None, a bool, a number, a string or a list, found {}", name,
+                                   nb::repr(value).c_str())
+                           .c_str());
 }
 
 bool taken(const FitOption& option, bool with_method) {

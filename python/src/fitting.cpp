@@ -65,18 +65,20 @@ nb::object fit_to_material(const OpenedBrdf& source, const std::string& to,
 void bind_fitting(nb::module_& m) {
   static const std::string kOfMethods = fit_signature(true), kOfModels = fit_signature(false);
   static const std::string kAboutMethods = fmt::format(
-      "With a method, fits what others would instead of positive factors, as `burnish fit --method` "
-      "does:\n{}.\n\n"
+      "Fits another kind of model instead of positive factors, as `burnish fit --method` does. The\n"
+      "methods are {}.\n"
+      "\n"
       "{}progress: as for a Model.",
       fmt::join(baseline_methods(), ", "), fit_keyword_help(true));
   static const std::string kAboutModels =
-      "Fits a factored BRDF as `burnish fit` does. Without options it makes the model of 16 KB and few "
-      "fetches\n"
-      "that serves most uses.\n\n" +
+      "Fits a factored BRDF as `burnish fit` does. Without options the model takes at most 16 KB and few\n"
+      "fetches, which suits most uses.\n"
+      "\n" +
       fit_keyword_help(false) +
-      "\nprogress(stage, fraction) is called from this thread. What it raises ends the fit, and so does "
-      "Ctrl-C.\n"
-      "Model.notes says what was done and how far off the model is.";
+      "\n"
+      "progress(stage, fraction) is called from this thread. An exception that it raises ends the fit,\n"
+      "and so does Ctrl-C.\n"
+      "Model.notes has the options of the fit and the errors of the model.";
   m.def("fit", &fit_baseline, nb::arg("source"), nb::kw_only(), nb::arg("method"),
         nb::arg("progress") = nb::none(), nb::arg("how"), nb::rv_policy::take_ownership,
         nb::sig(kOfMethods.c_str()), kAboutMethods.c_str());
@@ -86,14 +88,15 @@ void bind_fitting(nb::module_& m) {
         nb::kw_only(), nb::arg("beside") = true, nb::arg("simple") = false, nb::arg("progress") = nb::none(),
         nb::sig("def fit_material(source: Source, to: str, path: str | os.PathLike | None = None, *, beside: "
                 "bool = True, simple: bool = False, progress: object | None = None) -> dict"),
-        "Fits the parameters of a renderer's material, \"openpbr\" or \"gltf\", as `burnish fit --to` does, "
-        "and "
-        "returns\nwhat its --json prints: parameters, errors, what the BRDF does that the material cannot, "
-        "and, "
-        "beside, the\nerrors of a factored model. path: a file for the parameters. Of openpbr open_source "
-        "takes "
-        "the file and the\nsummary's \"spec\". simple: OpenPBR of base and specular alone; layered has the "
-        "errors with coat, fuzz and film.");
+        "Fits the parameters of a renderer's material, \"openpbr\" or \"gltf\", as `burnish fit --to` does.\n"
+        "Returns what its --json prints: parameters, errors, and the effects of the BRDF that the material\n"
+        "cannot show.\n"
+        "\n"
+        "path: a file for the parameters. open_source reads the file of openpbr, and the entry \"spec\" of\n"
+        "the result.\n"
+        "beside: adds the errors of a factored model.\n"
+        "simple: fits OpenPBR with base and specular alone; the entry layered has the errors with coat,\n"
+        "fuzz and film.");
   m.def(
       "conserve_energy",
       [](const OpenedModel& model) {
@@ -103,7 +106,8 @@ void bind_fitting(nb::module_& m) {
         return new OpenedModel(model.source().name, std::move(kept));
       },
       nb::arg("model"), nb::rv_policy::take_ownership,
-      "The model damped where its directional albedo exceeds 1, reciprocal as it was.");
+      "Returns the model, damped where its directional albedo exceeds 1. A reciprocal model stays\n"
+      "reciprocal.");
 }
 
 }  // namespace burnish::python

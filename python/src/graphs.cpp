@@ -74,14 +74,19 @@ nb::dict sampler_graphs(const OpenedBrdf& brdf) {
 
 void bind_graphs(nb::module_& m) {
   nb::borrow<nb::class_<OpenedModel>>(m.attr("Model"))
-      .def("_eval_graph", &eval_graph,
-           "f_r as a graph over the vectors wi and wo, for programs that compile their own code: nodes\n"
-           "(operation, type, constant, name, arguments), the outputs' nodes; the tables of its texels.")
-      .def("_lobe_graph", &lobe_graph, "The same with each lobe an output.");
+      .def(
+          "_eval_graph", &eval_graph,
+          "Returns f_r as a graph over the vectors wi and wo, for programs that compile their own code. The\n"
+          "graph is (nodes, numbers of the outputs' nodes). A node is (operation, type, constant, name,\n"
+          "arguments). The second result has the tables of the texels, by name.")
+      .def("_lobe_graph", &lobe_graph, "Returns the same graph with one output for each lobe.");
   nb::borrow<nb::class_<OpenedBrdf>>(m.attr("Source"))
-      .def("_eval_graph", &formula_graph, "The same as a Model's of OpenPBR, without tables.")
+      .def("_eval_graph", &formula_graph,
+           "Returns the graph of OpenPBR, as Model._eval_graph does, without tables. Raises Error for "
+           "another\n"
+           "BRDF.")
       .def("_sampler_graphs", &sampler_graphs,
-           "sample_wi and pdf as such graphs, and the arrays of integers that they read.");
+           "Returns sample_wi and pdf as such graphs, and the arrays of integers that they read.");
 }
 
 }  // namespace burnish::python

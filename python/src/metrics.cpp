@@ -152,23 +152,26 @@ nb::tuple pair_arrays(const std::vector<DirectionPair>& pairs) {
 }
 
 void bind_error_figures(nb::module_& m) {
-  nb::class_<ErrorFigures>(m, "ErrorFigures", "How far a model is from a reference.")
+  nb::class_<ErrorFigures>(m, "ErrorFigures", "The errors of a model against a reference.")
       .def_ro("log_cos", &ErrorFigures::log_cos, "mean |ln(1 + f cos theta_i) - ln(1 + f^ cos theta_i)|")
       .def_ro("relative", &ErrorFigures::relative, "exp(mean |ln((f + floor) / (f^ + floor))|) - 1")
       .def_ro("rms_log", &ErrorFigures::rms_log, "root mean square of ln((f + floor) / (f^ + floor))")
       .def_ro("mean_abs_log", &ErrorFigures::mean_abs_log, "mean |ln(f / f^)| where both are above 0")
-      .def_ro("psnr", &ErrorFigures::psnr, "dB, of the lit spheres; infinite if equal")
-      .def_ro("ssim", &ErrorFigures::ssim, "mean of the lit spheres")
-      .def_ro("unknown_fraction", &ErrorFigures::unknown_fraction, "share of the pairs left out")
+      .def_ro("psnr", &ErrorFigures::psnr, "PSNR of the lit spheres in dB; infinite if they are equal")
+      .def_ro("ssim", &ErrorFigures::ssim, "mean SSIM of the lit spheres")
+      .def_ro("unknown_fraction", &ErrorFigures::unknown_fraction,
+              "share of the pairs that have no known value")
       .def_ro("unknown_pixels", &ErrorFigures::unknown_pixels)
       .def("__repr__", &text_of);
   m.def("error_figures", &error_figures, nb::arg("reference"), nb::arg("model"), nb::kw_only(),
         nb::arg("count") = FigureOptions{}.count, nb::arg("seed") = FigureOptions{}.seed,
         nb::arg("floor") = FigureOptions{}.floor, nb::arg("image_size") = FigureOptions{}.image_size,
         nb::arg("symmetrize") = true,
-        "Error figures of a model: count direction pairs, and lit spheres of image_size pixels. floor in "
-        "1/sr.\n"
-        "symmetrize: both sides as their reciprocal parts, as everywhere in burnish.");
+        "Returns the error figures of a model, from `count` direction pairs and lit spheres of `image_size`\n"
+        "pixels.\n"
+        "\n"
+        "floor: in 1/sr, added to values before their logarithms are taken.\n"
+        "symmetrize: compares the reciprocal parts of both BRDFs, as burnish does everywhere.");
   m.def("compare_models", &compare_models, nb::arg("reference"), nb::arg("models"), nb::kw_only(),
         nb::arg("count") = FigureOptions{}.count, nb::arg("seed") = FigureOptions{}.seed,
         nb::arg("symmetrize") = true, nb::arg("report") = nb::none(),
@@ -176,13 +179,13 @@ void bind_error_figures(nb::module_& m) {
                 "count: int = 200000, seed: int = 1, symmetrize: bool = True, report: str | os.PathLike | "
                 "None = None) "
                 "-> list[dict]"),
-        "What `burnish compare --json` prints: one dictionary a model, of a measurement with the figures at "
-        "its "
-        "nodes\nand of scattered samples with the expected error. report: a folder for pictures and "
-        "plots.\n\n"
-        "models: named by the keys of a dictionary, {\"small\": model}. In a list a model has its source's "
-        "name; "
-        "where\nthat is the reference's or another's, its expression and bytes.");
+        "Returns what `burnish compare --json` prints, one dictionary for each model. A measurement adds\n"
+        "the errors at its nodes, and scattered samples add the expected error.\n"
+        "\n"
+        "models: a dictionary names them by its keys, {\"small\": model}. In a list each model has the name\n"
+        "of its source. A name that the reference or another model also has is replaced by the model's\n"
+        "expression and bytes.\n"
+        "report: a folder for pictures and plots.");
 }
 
 }  // namespace
@@ -192,7 +195,8 @@ void bind_metrics(nb::module_& m) {
   m.def(
       "directional_albedo", &directional_albedo, nb::arg("source"), nb::arg("wi"),
       nb::sig("def directional_albedo(source: Source, wi: numpy.typing.ArrayLike) -> NDArray[numpy.float64]"),
-      "The share of light from wi that is reflected, one a channel, to 0.5 %.\n\n"
+      "Returns the share of light from wi that is reflected, for each channel, to 0.5 %.\n"
+      "\n"
       "wi: unit vectors above the horizon, (N, 3) or (3,). Returns (N, channels) or (channels,).");
   m.def(
       "render_sphere",
@@ -204,8 +208,10 @@ void bind_metrics(nb::module_& m) {
       nb::arg("source"), nb::arg("light_angle"), nb::arg("size") = kSphereSize,
       nb::sig(
           "def render_sphere(source: Source, light_angle: float, size: int = 256) -> NDArray[numpy.float32]"),
-      "A sphere seen along the normal of its middle under a directional light light_angle radians from the\n"
-      "view: f_r cos(theta_i), 1/sr, linear, (size, size, channels), 0 outside the sphere.");
+      "Renders a sphere under a directional light that stands light_angle radians from the view. The view\n"
+      "is orthographic, along the normal of the sphere's middle.\n"
+      "\n"
+      "Returns f_r cos(theta_i) in 1/sr, linear, (size, size, channels), 0 outside the sphere.");
   m.def(
       "draw_pairs",
       [](std::size_t count, std::uint64_t seed, bool isotropic) {
@@ -214,8 +220,10 @@ void bind_metrics(nb::module_& m) {
       nb::arg("count"), nb::arg("seed") = 1, nb::arg("isotropic") = true,
       nb::sig("def draw_pairs(count: int, seed: int = 1, isotropic: bool = True) -> "
               "tuple[NDArray[numpy.float64], NDArray[numpy.float64]]"),
-      "Direction pairs that error figures are taken at: wi and wo, float64 (count, 3). Uniform in theta_h,\n"
-      "theta_d, phi_d (and phi_h unless isotropic), both cosines above 0.05.");
+      "Draws the direction pairs at which error figures are computed: wi and wo, float64 (count, 3).\n"
+      "\n"
+      "Pairs are uniform in theta_h, theta_d and phi_d, and in phi_h unless isotropic. Both cosines are\n"
+      "above 0.05.");
   m.def(
       "measure",
       [](const OpenedBrdf& source, std::size_t count, double noise, std::uint64_t seed) {
@@ -230,8 +238,10 @@ void bind_metrics(nb::module_& m) {
       nb::arg("seed") = 1,
       nb::sig("def measure(source: Source, *, count: int = 10000, noise: float = 0.0, seed: int = 1) -> "
               "tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]"),
-      "A virtual goniometer: wi, wo (count, 3) and values (count, channels) in 1/sr. noise: sigma of the\n"
-      "logarithm of a random factor.");
+      "Measures a source by a virtual goniometer. Returns wi and wo (count, 3), and values (count,\n"
+      "channels) in 1/sr.\n"
+      "\n"
+      "noise: the standard deviation of the logarithm of a random factor on each value.");
 }
 
 }  // namespace burnish::python

@@ -109,7 +109,7 @@ void explain_mistakes(nb::module_& m) {
       [](const std::vector<std::string>& names, const std::string& word) {
         return expected_one_of(std::vector<std::string_view>(names.begin(), names.end()), word);
       },
-      "\"expected one of A, B, found 'WORD'; did you mean 'A'?\"");
+      "Returns \"expected one of A, B, found 'WORD'; did you mean 'A'?\".");
   const nb::handle members = m.attr("__dict__");
   explain_all(members);
   for (const nb::handle value : nb::list(members.attr("values")()))

@@ -27,8 +27,9 @@ class ThreadLimitContext {
 };
 
 void bind_threads(nb::module_& m) {
-  nb::class_<ThreadLimitContext>(m, "ThreadLimit",
-                                 "with ThreadLimit(n): at most n threads in the library; 0: all.")
+  nb::class_<ThreadLimitContext>(
+      m, "ThreadLimit",
+      "A context manager: in `with ThreadLimit(n):` the library uses at most n threads; 0 means all.")
       .def(nb::init<int>(), nb::arg("threads"))
       .def("__enter__",
            [](nb::object self) {
@@ -43,8 +44,8 @@ void bind_threads(nb::module_& m) {
 NB_MODULE(_burnish, m) {
   m.doc() = "Compressed, sampled and measured BRDFs: the C++ library's functions on NumPy arrays.";
   nb::exception<Error>(m, "Error", PyExc_ValueError).attr("__doc__") =
-      "Bad input: a file that is not what it claims to be, a parameter outside its domain. One line: "
-      "\"file: offset N: expected E, found F\".";
+      "Bad input: a file that is not what it claims to be, or a parameter outside its domain. The message\n"
+      "is one line: \"file: offset N: expected E, found F\".";
   bind_threads(m);
   bind_source(m);
   bind_eval(m);

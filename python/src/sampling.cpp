@@ -97,16 +97,21 @@ nb::tuple sample_any(const OpenedBrdf& brdf, nb::handle wo, nb::handle u) {
 }
 
 constexpr const char* kSampleDoc =
-    "Draws directions to the light nearly in proportion to f_r cos(theta_i).\n\n"
-    "wo: unit vectors to the viewer, (N, 3) or (3,); u: uniform numbers in [0, 1), (N, 2) or (2,), of the\n"
-    "same type, float32 or float64; lists as eval takes them. Returns wi (N, 3) and their densities (N,) per "
-    "solid angle, 1/sr; "
-    "density\n"
-    "0: rounding put wi onto the horizon, and the draw carries no light. Tables are made at the first call.";
+    "Draws directions to the light, nearly in proportion to f_r cos(theta_i).\n"
+    "\n"
+    "wo: unit vectors to the viewer, (N, 3) or (3,).\n"
+    "u: uniform numbers in [0, 1), (N, 2) or (2,), of the same type as wo, float32 or float64. Lists\n"
+    "are taken as eval takes them.\n"
+    "Returns wi (N, 3) and their densities (N,) per solid angle, 1/sr. A density of 0 means that\n"
+    "rounding put wi onto the horizon, and that the draw carries no light. The first call makes the\n"
+    "sampler's tables.";
 constexpr const char* kPdfDoc =
-    "The density with which sample_wi draws wi for wo, per solid angle, 1/sr; zero below the horizon.\n\n"
-    "wi, wo: unit vectors, (N, 3) or (3,), both float32 or both float64; lists as eval takes them. Returns\n"
-    "(N,), or fills `out`.";
+    "Returns the density with which sample_wi draws wi for wo, per solid angle, 1/sr; zero below the\n"
+    "horizon.\n"
+    "\n"
+    "wi, wo: unit vectors, (N, 3) or (3,), both float32 or both float64. Lists are taken as eval takes\n"
+    "them.\n"
+    "Returns (N,), or fills and returns `out`.";
 
 }  // namespace
 

@@ -56,17 +56,17 @@ void write_ktx2(const std::filesystem::path& path, const ShaderTexture& texture,
 }  // namespace
 
 void bind_shaders(nb::module_& m) {
-  nb::class_<PlacedTable>(m, "PlacedTable", "Where a table stands in a texture.")
-      .def_ro("table", &PlacedTable::table, "Number of the model's table.")
-      .def_ro("first", &PlacedTable::first, "x, y and z of the texel that is its first node.")
-      .def_ro("exponent", &PlacedTable::exponent, "The table's values are there times 2^exponent.")
+  nb::class_<PlacedTable>(m, "PlacedTable", "The place of a table in a texture.")
+      .def_ro("table", &PlacedTable::table, "Index into Model.tables.")
+      .def_ro("first", &PlacedTable::first, "x, y and z of the texel that holds the table's first node.")
+      .def_ro("exponent", &PlacedTable::exponent, "The texels are the table's values times 2^exponent.")
       .def("__repr__", [](const PlacedTable& t) {
         return fmt::format("<burnish placed table {}: first texel ({}), times 2^{}>", t.table,
                            fmt::join(t.first, ", "), t.exponent);
       });
   nb::class_<ShaderTexture>(m, "ShaderTexture",
-                            "What a shader reads: tables beside, above or behind each other.")
-      .def_ro("name", &ShaderTexture::name, "Of the sampler.")
+                            "A texture of a shader: tables beside, above or behind each other.")
+      .def_ro("name", &ShaderTexture::name, "The name of the sampler in the shader.")
       .def_ro("tables", &ShaderTexture::tables)
       .def_prop_ro("format", [](const ShaderTexture& t) { return std::string(to_string(t.format)); })
       .def_prop_ro(
@@ -79,14 +79,14 @@ void bind_shaders(nb::module_& m) {
             return to_numpy(t.values, shape);
           },
           nb::sig("def values(self) -> numpy.ndarray"),
-          "Texels, (height, width, channels) float32, with the depth before them where there is one.")
+          "Texels, float32 (height, width, channels); the depth comes first where there is one.")
       .def("__repr__", [](const ShaderTexture& t) {
         return fmt::format("<burnish texture '{}': {} x {}{}, {}, {}, tables {}>", t.name, t.width, t.height,
                            t.depth > 0 ? fmt::format(" x {}", t.depth) : "", counted(t.channels, "channel"),
                            to_string(t.format), t.tables.size());
       });
-  nb::class_<Shader>(m, "Shader", "Source text that evaluates a model, and what it reads.")
-      .def_ro("text", &Shader::text, "Without a #version line.")
+  nb::class_<Shader>(m, "Shader", "Source text that evaluates a model, and the textures that the text reads.")
+      .def_ro("text", &Shader::text, "The source text, without a #version line.")
       .def_ro("textures", &Shader::textures)
       .def_prop_ro(
           "cost",
@@ -100,7 +100,8 @@ void bind_shaders(nb::module_& m) {
             cost["powers"] = s.cost.powers;
             return cost;
           },
-          nb::sig("def cost(self) -> dict[str, int]"), "Of one evaluation; operations a component.")
+          nb::sig("def cost(self) -> dict[str, int]"),
+          "The cost of one evaluation; operations are counted for each component.")
       .def("__repr__", [](const Shader& s) {
         return fmt::format("<burnish shader: {}, {}, {}>", counted(s.text.size(), "byte"),
                            counted(s.textures.size(), "texture"), to_string(s.cost));
@@ -110,17 +111,20 @@ void bind_shaders(nb::module_& m) {
       nb::arg("exact") = false, nb::arg("half") = false, nb::arg("name") = "brdf",
       nb::call_guard<nb::gil_scoped_release>(),
       fmt::format(
-          "Two functions, as `burnish export --to` writes them: burnish_NAME(wi, wo), f_r in 1/sr of unit\n"
-          "vectors of the local frame, and burnish_NAME_world(n, t, l, v).\n\n"
-          "language: {}; cpp has its tables inside.\nexact: texels are weighed in floats, not by the texture "
-          "unit; always so in cpp. half: texels are "
-          "multiplied in half\nprecision (mediump, min16float, half, f16), within 1 %; neither exact nor in "
-          "cpp.",
+          "Returns a shader of two functions, as `burnish export --to` writes them. burnish_NAME(wi, wo) is\n"
+          "f_r in 1/sr of unit vectors of the local frame. burnish_NAME_world(n, t, l, v) takes vectors of\n"
+          "the world.\n"
+          "\n"
+          "language: {}; cpp has its tables inside.\n"
+          "exact: the shader interpolates texels in floats, instead of the texture unit; cpp always does "
+          "so.\n"
+          "half: texels are multiplied in half precision (mediump, min16float, half, f16), within 1 %.\n"
+          "Neither exact nor cpp allows it.",
           quoted_names(language_names(), "or"))
           .c_str());
   m.def("write_ktx2", &write_ktx2, nb::arg("path"), nb::arg("texture"), nb::kw_only(),
         nb::arg("compressed") = true, nb::call_guard<nb::gil_scoped_release>(),
-        "Writes a shader's texture as a KTX2 file. compressed: with Zstandard.");
+        "Writes a shader's texture as a KTX2 file. compressed: compresses it by Zstandard.");
 }
 
 }  // namespace burnish::python

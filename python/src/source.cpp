@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -78,7 +79,8 @@ OpenedModel* with_log_tables(const OpenedModel& self,
     Table& table = tables[t];
     const std::span<const std::int64_t> found(logs[t].shape_ptr(), logs[t].ndim());
     if (!std::ranges::equal(array_shape(table), found, std::cmp_equal<std::size_t, std::int64_t>))
-      throw Error("log_tables: expected the shape of table '" + table.name + "'");
+      throw Error(fmt::format("log_tables: expected shape ({}) of table '{}', found ({})",
+                              fmt::join(array_shape(table), ", "), table.name, fmt::join(found, ", ")));
     std::copy(logs[t].data(), logs[t].data() + logs[t].size(), table.values.begin());
     if (format) table.format = parse_table_format(*format);
   }
@@ -93,15 +95,17 @@ OpenedModel* with_log_tables(const OpenedModel& self,
 void bind_model_parts(nb::module_& m) {
   nb::class_<Table>(m, "Table", "One positive factor lambda: nodes over one to three angles or a hemisphere.")
       .def_ro("name", &Table::name)
-      .def_ro("channels", &Table::channels, "1, shared by the BRDF's channels, or their number.")
+      .def_ro("channels", &Table::channels,
+              "The table's channels: as many as the BRDF has, or 1 that they share.")
       .def_prop_ro(
           "values", &table_values, nb::sig("def values(self) -> NDArray[numpy.float32]"),
-          "float32 (height, width, channels), of a volume (depth, height, width, channels), read-only, no "
-          "copy: lambda at the nodes, largest 1.")
+          "lambda at the nodes, the largest 1: float32 (height, width, channels), or for a volume (depth,\n"
+          "height, width, channels). The array is read-only and no copy.")
       .def_prop_ro(
           "shape", [](const Table& t) { return std::string(to_string(t.layout.shape)); },
-          "What the nodes are spread over: \"line\" (a polar angle), \"disk\" (a hemisphere), \"grid\" (two "
-          "polar angles), \"volume\" (three).")
+          "The domain of the nodes: \"line\" (a polar angle), \"disk\" (a hemisphere), \"grid\" (two polar "
+          "angles),\n"
+          "\"volume\" (three).")
       .def_prop_ro("format", [](const Table& t) { return std::string(to_string(t.format)); })
       .def_prop_ro("byte_count", &Table::byte_count)
       .def_prop_ro(
@@ -110,10 +114,11 @@ void bind_model_parts(nb::module_& m) {
           "Spacing of the nodes: (\"identity\" | \"power\" | \"rational\", parameter).")
       .def_prop_ro(
           "warp_y", [](const Table& t) { return warp_terms(t.layout.warp_y); },
-          nb::sig("def warp_y(self) -> tuple[str, float]"), "Of grids and volumes, along y.")
+          nb::sig("def warp_y(self) -> tuple[str, float]"),
+          "Spacing of the nodes along y, for grids and volumes.")
       .def_prop_ro(
           "warp_z", [](const Table& t) { return warp_terms(t.layout.warp_z); },
-          nb::sig("def warp_z(self) -> tuple[str, float]"), "Of volumes, along z.")
+          nb::sig("def warp_z(self) -> tuple[str, float]"), "Spacing of the nodes along z, for volumes.")
       .def("__repr__", &text_of_table);
   nb::class_<FactorUse>(m, "FactorUse", "One use of a table in a product.")
       .def_ro("table", &FactorUse::table, "Index into Model.tables.")
@@ -126,13 +131,14 @@ void bind_model_parts(nb::module_& m) {
       .def_prop_ro(
           "projection_y", [](const FactorUse& u) { return projection_terms(u.projection_y); },
           nb::sig("def projection_y(self) -> tuple[float, float, float, float] | str"),
-          "Of grids and volumes.")
+          "The projection along y, for grids and volumes.")
       .def_prop_ro(
           "projection_z", [](const FactorUse& u) { return projection_terms(u.projection_z); },
-          nb::sig("def projection_z(self) -> tuple[float, float, float, float] | str"), "Of volumes only.")
+          nb::sig("def projection_z(self) -> tuple[float, float, float, float] | str"),
+          "The projection along z, for volumes.")
       .def("__repr__", &text_of_use);
   nb::class_<Lobe>(m, "Lobe", "One product of factors.")
-      .def_ro("scale", &Lobe::scale, "One entry a channel.")
+      .def_ro("scale", &Lobe::scale, "The scale in 1/sr, one entry for each channel.")
       .def_ro("factors", &Lobe::factors)
       .def("__repr__", &text_of_lobe);
 }
@@ -140,7 +146,7 @@ void bind_model_parts(nb::module_& m) {
 void bind_opened_brdf(nb::module_& m) {
   nb::class_<OpenedBrdf>(
       m, "Source",
-      "A BRDF: measured, analytic, a neural encoding or a model. Immutable; threads may share it.")
+      "A BRDF: measured, analytic, a neural encoding or a model. It never changes; threads may share it.")
       .def_prop_ro("name", [](const OpenedBrdf& b) { return b.source().name; })
       .def_prop_ro(
           "channels", [](const OpenedBrdf& b) { return b.ref().channels(); },
@@ -151,7 +157,7 @@ void bind_opened_brdf(nb::module_& m) {
           "Wavelengths of the channels in nm; empty for grey and RGB.")
       .def_prop_ro(
           "bytes", [](const OpenedBrdf& b) { return b.source().bytes(); },
-          "Size of a compressed BRDF; None for measurements and formulas.")
+          "Bytes of a compressed BRDF; None for measurements and formulas.")
       .def(
           "info",
           [](const OpenedBrdf& b) {
@@ -159,7 +165,7 @@ void bind_opened_brdf(nb::module_& m) {
                 without_gil(FunctionWatch({&b}), [&] { return to_json(report_on(b.source())); }));
           },
           nb::sig("def info(self) -> dict"),
-          "What `burnish info --json` prints, but what a shader costs: see generate_shader.")
+          "Returns what `burnish info --json` prints, except the cost of a shader: see generate_shader.")
       .def("__repr__", &text_of_source);
 }
 
@@ -183,36 +189,36 @@ void bind_model(nb::module_& m) {
       .def_prop_ro("table_bytes", [](const OpenedModel& b) { return b.brdf().table_bytes(); })
       .def_prop_ro(
           "expression", [](const OpenedModel& b) { return model_expression(b.brdf()); },
-          "Such as \"p(wo) q(h) p(wi)\".")
+          "The product of tables, such as \"p(wo) q(h) p(wi)\".")
       .def_prop_ro(
           "notes", [](const OpenedModel& b) { return from_json(b.source().findings.notes); },
           nb::sig("def notes(self) -> dict"),
-          "What the fit noted: source, options, errors. Of a measurement \"node_expected\" is the error "
-          "\"relative\"\n"
-          "that is expected over all directions, measured or not, and \"from_theta_i_deg\" in bands of 15 "
+          "Notes of the fit: source, options, errors. For a measurement, \"node_expected\" holds expected\n"
+          "errors: \"relative\" over all directions, measured or not, and \"from_theta_i_deg\" in bands of "
+          "15\n"
           "degrees.")
       .def("__repr__", &text_of_model)
-      .def(
-          "with_log_tables", &with_log_tables, nb::arg("log_tables"), nb::arg("format") = nb::none(),
-          "The model with other tables, given by their natural logarithms.\n\n"
-          "log_tables: one float64 array a table, of the shape of its values. Each is scaled to a largest "
-          "value\n"
-          "of 1, what is divided out moves into the lobes' scales, and rounded to its format or to `format`\n"
-          "(\"half\", \"float\", \"rgb9e5\", \"unorm8\").");
+      .def("with_log_tables", &with_log_tables, nb::arg("log_tables"), nb::arg("format") = nb::none(),
+           "Returns the model with other tables, given by their natural logarithms.\n"
+           "\n"
+           "log_tables: one float64 array for each table, in the shape of its values. Each table is scaled "
+           "to\n"
+           "a largest value of 1, and the lobes' scales take the factor. Values are then rounded to the\n"
+           "table's format, or to `format` (\"half\", \"float\", \"rgb9e5\", \"unorm8\").");
 }
 
 void bind_baseline(nb::module_& m) {
-  nb::class_<OpenedBaseline, OpenedBrdf>(m, "Baseline",
-                                         "What `fit(..., method=)` makes: no positive factors.")
+  nb::class_<OpenedBaseline, OpenedBrdf>(
+      m, "Baseline", "A model that `fit(..., method=)` makes. It has no positive factors.")
       .def_prop_ro(
           "kind", [](const OpenedBaseline& b) { return b.baseline().kind; },
           "\"svd\", \"nd\", \"nmf\", \"dgf\" or \"analytic\".")
       .def_prop_ro(
           "expression", [](const OpenedBaseline& b) { return baseline_expression(b.baseline().brdf); },
-          "What it is made of, one line.")
+          "The parts of the model, in one line.")
       .def_prop_ro(
           "notes", [](const OpenedBaseline& b) { return from_json(b.baseline().notes); },
-          nb::sig("def notes(self) -> dict"), "What the fit noted: source, options, errors.")
+          nb::sig("def notes(self) -> dict"), "Notes of the fit: source, options, errors.")
       .def("__repr__", &text_of_baseline);
 }
 
@@ -245,19 +251,25 @@ void bind_source(nb::module_& m) {
           "has_cosine: bool = False, clamp_negatives: bool = True, back_side: bool = False, "
           "has_cosine_o: bool = False, brf: bool = False, part: str = '', band: str = '', "
           "scale_to_tis: bool = False) -> Source"),
-      "Opens a file of any known format (found by content), a neural encoding \"nbrdf:FILE#NAME\" or\n"
-      "\"np:FOLDER#NAME\", or an analytic BRDF such as \"ggx:alpha_x=0.1,alpha_y=0.3\".\n\n"
-      "keep_spectral: one channel a wavelength instead of linear Rec. 709; illuminant: \"E\", \"D50\", "
-      "\"D65\", \"A\" or a file, "
-      "the\n"
-      "light under which spectra become RGB; has_cosine: CSV values are f_r cos(theta_i), has_cosine_o: f_r\n"
-      "cos(theta_o), brf: pi f_r; clamp_negatives: "
-      "set\n"
-      "interpolated values below zero to zero; back_side: Klems, the back's reflection. part:\n"
-      "\"reflection-front\", \"reflection-back\", \"transmission-front\" or \"transmission-back\" of a file "
-      "with\n"
-      "several, band: \"Visible\", \"Solar\", \"NIR\", \"CIE-XYZ\", ...; info() names those there are.\n"
-      "scale_to_tis: Zemax, scale each incidence to its TIS. A burnish model is returned as a Model.");
+      "Opens a file of any known format, which is recognized by its content. Also opens a neural encoding\n"
+      "\"nbrdf:FILE#NAME\" or \"np:FOLDER#NAME\", or an analytic BRDF such as "
+      "\"ggx:alpha_x=0.1,alpha_y=0.3\".\n"
+      "A burnish model is returned as a Model.\n"
+      "\n"
+      "keep_spectral: keeps one channel for each wavelength, instead of linear Rec. 709.\n"
+      "illuminant: the light under which spectra become RGB: \"E\", \"D50\", \"D65\", \"A\" or a file.\n"
+      "has_cosine: CSV values are f_r cos(theta_i).\n"
+      "has_cosine_o: CSV values are f_r cos(theta_o).\n"
+      "brf: CSV values are pi f_r.\n"
+      "clamp_negatives: sets interpolated values below zero to zero.\n"
+      "back_side: takes the reflection of the back from Klems files.\n"
+      "part: \"reflection-front\", \"reflection-back\", \"transmission-front\" or \"transmission-back\" of a "
+      "file\n"
+      "with several parts.\n"
+      "band: \"Visible\", \"Solar\", \"NIR\", \"CIE-XYZ\", ... of a file with several bands. info() lists "
+      "parts\n"
+      "and bands.\n"
+      "scale_to_tis: scales each incidence of Zemax files to its TIS.");
 }
 
 }  // namespace burnish::python

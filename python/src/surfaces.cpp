@@ -130,16 +130,16 @@ nb::object eval_any(const OpenedSurface& surface, nb::handle uv, nb::handle wi, 
 }
 
 constexpr const char* kSurfaceEvalDoc =
-    "f_r in 1/sr, without the cosine, at places uv, (N, 2) or (2,), v downwards; lod: the mip level, which "
-    "may\n"
-    "lie between two.\n\n"
-    "wi, wo: unit vectors of the surface's frame, (N, 3) or (3,); all three float32 or all float64, any "
-    "strides,\n"
-    "read where they lie; lists as Source.eval takes them. A single row stands for every row of the others; "
-    "a single place is found once.\n"
-    "Returns (N, channels) of the same type, or fills and returns `out`. float64 is the definition, float32 "
-    "the\n"
-    "fast evaluator. nan stands where uv is not finite and where wi or wo is no unit vector to 1 %.";
+    "Returns f_r in 1/sr, without the cosine, at places of the surface.\n"
+    "\n"
+    "uv: the places, (N, 2) or (2,), v downwards.\n"
+    "wi, wo: unit vectors of the surface's frame, (N, 3) or (3,). All three arguments are float32 or\n"
+    "all float64. Any strides are read in place. Lists are taken as Source.eval takes them. A single\n"
+    "row stands for every row of the other arguments. The texels of a single place are looked up once.\n"
+    "lod: the mip level, which may lie between two levels.\n"
+    "Returns (N, channels) of the same type, or fills and returns `out`. float64 is evaluated by the\n"
+    "definition, float32 by the fast evaluator. The value is nan where uv is not finite, and where wi\n"
+    "or wo is not a unit vector to 1 %.";
 
 nb::object values_of(const SurfaceMap& map) {
   std::vector<float> values;
@@ -229,8 +229,9 @@ nb::dict exported(const OpenedSurface& surface, const std::vector<std::string>& 
 }  // namespace
 
 void bind_surfaces(nb::module_& m) {
-  nb::class_<OpenedSurface>(m, "Surface",
-                            "A factored BRDF whose lobes' scales are maps. Immutable; threads may share it.")
+  nb::class_<OpenedSurface>(
+      m, "Surface",
+      "A factored BRDF whose lobes' scales are maps. It never changes, so threads may share it.")
       .def_prop_ro("width", [](const OpenedSurface& s) { return s.brdf().width(); })
       .def_prop_ro("height", [](const OpenedSurface& s) { return s.brdf().height(); })
       .def_prop_ro("channels", [](const OpenedSurface& s) { return s.brdf().channels(); })
@@ -240,17 +241,17 @@ void bind_surfaces(nb::module_& m) {
           [](const OpenedSurface& s) {
             return new OpenedModel("lobes", {s.brdf().lobes(), {}, "{}"});
           },
-          nb::rv_policy::take_ownership, "The Model of its lobes, each of weight 1.")
+          nb::rv_policy::take_ownership, "The Model of the surface's lobes, each with weight 1.")
       .def_prop_ro("weights", &weights_of,
-                   "One float32 (height, width, 1 or channels) a lobe, row 0 at v = 0.")
+                   "One float32 array (height, width, 1 or channels) for each lobe; row 0 is at v = 0.")
       .def_prop_ro(
           "normals", [](const OpenedSurface& s) { return map_or_none(s.brdf().maps().normals); },
-          "x and y, (height, width, 2), or None: (0, 0).")
+          "x and y of the normals, (height, width, 2), or None where all are (0, 0).")
       .def_prop_ro(
           "tangents", [](const OpenedSurface& s) { return map_or_none(s.brdf().maps().tangents); },
-          "x and y of a vector in the plane, or None: (1, 0).")
+          "x and y of tangents in the plane, (height, width, 2), or None where all are (1, 0).")
       .def_prop_ro(
-          "notes", [](const OpenedSurface& s) { return from_json(s.notes); }, "What the fit wrote down.")
+          "notes", [](const OpenedSurface& s) { return from_json(s.notes); }, "Notes of the fit.")
       .def("__repr__",
            [](const OpenedSurface& s) {
              const SpatialBrdf& brdf = s.brdf();
@@ -281,18 +282,24 @@ void bind_surfaces(nb::module_& m) {
             return new OpenedModel("place", {s.brdf().at(u, v, lod), {}, "{}"});
           },
           nb::arg("u"), nb::arg("v"), nb::arg("lod") = 0.0, nb::rv_policy::take_ownership,
-          "The Model of a place, in its own frame.")
-      .def("albedo", &albedo_of, "The largest share of light that a texel reflects, and where.")
+          "Returns the Model of a place, in the frame of that place.")
+      .def("albedo", &albedo_of,
+           "Returns the mean and largest share of light that texels reflect, and the texel of the largest\n"
+           "share.")
       .def("export", &exported, nb::arg("to"), nb::arg("folder") = nb::none(), nb::arg("name") = nb::none(),
            nb::arg("exact") = false, nb::arg("blocks") = false,
-           "Files by name, as `burnish export`: shaders, ktx2, exr, png, gltf, three, html. name: of files\n"
-           "and functions, by default the surface's. blocks: maps as pairs in BC5.")
+           "Returns files by name, as `burnish export` writes them: shaders, ktx2, exr, png, gltf, three,\n"
+           "html.\n"
+           "\n"
+           "name: the name of files and functions, by default the surface's.\n"
+           "blocks: stores maps as pairs in BC5.")
       .def(
           "write",
           [](const OpenedSurface& s, const std::filesystem::path& path) {
             write_then_rename(path, format_surface_as(path, {s.brdf(), s.notes}));
           },
-          nb::arg("path"), "Its file: OpenEXR where the name ends in .exr, else .burnish.");
+          nb::arg("path"),
+          "Writes the file of the surface: OpenEXR where the name ends in .exr, else .burnish.");
   m.def("open_surface", &open_surface, nb::arg("path"), nb::rv_policy::take_ownership,
         "Reads the .burnish or OpenEXR file of a surface.");
   m.def("fit_surface", &fit_surface, nb::arg("capture"), nb::kw_only(), nb::arg("lobes") = 6,
@@ -300,12 +307,14 @@ void bind_surfaces(nb::module_& m) {
         nb::arg("normals") = nb::none(), nb::arg("rounds").none() = nb::none(), nb::arg("widened") = false,
         nb::arg("seed") = 1, nb::arg("checkpoint") = nb::none(), nb::arg("pictures") = Capture::kBtfPictures,
         nb::arg("memory") = SurfaceFitOptions().tile_bytes, nb::arg("progress") = nb::none(),
-        "(Surface, report) of a capture's folder, of a BTF, of which so many pictures are taken, or of a\n"
-        "CSV of samples of texels, as `burnish fit-surface`. memory: bytes of pictures at a time.\n\n"
-        "progress(stage, fraction) is called from this thread; what it raises ends the fit, and so does "
-        "Ctrl-C.\n"
-        "checkpoint: a file that a fit which is stopped leaves, and that is gone on from if it is there;\n"
-        "removed at the end.");
+        "Fits a surface as `burnish fit-surface` does, and returns (Surface, report).\n"
+        "\n"
+        "capture: the folder of a capture, a BTF, or a CSV file with samples of texels.\n"
+        "pictures: how many pictures of a BTF are taken.\n"
+        "memory: the most bytes of pictures that are in memory at a time.\n"
+        "progress(stage, fraction) is called from this thread. An exception that it raises ends the fit,\n"
+        "and so does Ctrl-C.\n"
+        "checkpoint: a file that lets a stopped fit resume. It is removed at the end of the fit.");
 }
 
 }  // namespace burnish::python

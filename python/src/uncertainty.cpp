@@ -82,14 +82,13 @@ nb::object next_to_measure(const OpenedBrdf& brdf, std::size_t count) {
 }
 
 constexpr const char* kErrorDoc =
-    "How far eval may be off at pairs of directions, of a measurement: the standard deviation of ln(f + "
-    "0.001),\n"
-    "about the relative error, as `burnish eval --error` writes it.\n\n"
-    "wi, wo: as eval takes them. Returns (N,), or fills `out`: small where samples are dense and smooth, "
-    "larger\n"
-    "where there are none; 0 below the horizon, nan where wi or wo is no unit vector to 1 %. What it needs "
-    "is made\n"
-    "at the first call. Formulas and models are refused.";
+    "Returns how far eval of a measurement may be off, as `burnish eval --error` writes it. The error\n"
+    "is the standard deviation of ln(f + 0.001), which is about the relative error.\n"
+    "\n"
+    "wi, wo: as eval takes them. Returns (N,), or fills and returns `out`.\n"
+    "The error is small where samples are dense and smooth, and larger where there are none. It is 0\n"
+    "below the horizon, and nan where wi or wo is not a unit vector to 1 %. The first call makes the\n"
+    "tables that it needs. Formulas and models are refused.";
 
 }  // namespace
 
@@ -102,12 +101,13 @@ void bind_uncertainty(nb::module_& m) {
            kErrorDoc);
   m.def("next_measurements", &next_to_measure, nb::arg("source"), nb::arg("count") = 20,
         nb::sig("def next_measurements(source: Source, count: int = 20) -> list[dict[str, float]]"),
-        "Directions to measure next, as `burnish measure --next` lists them: each lowers the expected error "
-        "of the\n"
-        "measurement most, given those before it. All can be measured in one go.\n\n"
-        "A dictionary a pair: theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg, and error, how far its value "
-        "may be\n"
-        "off once those before it are measured. count: from 1 to 800. Formulas and models are refused.");
+        "Returns directions to measure next, as `burnish measure --next` lists them. Each lowers the\n"
+        "expected error of the measurement most, given the directions before it. All can be measured in one\n"
+        "go.\n"
+        "\n"
+        "A pair of directions is a dictionary of theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg and error.\n"
+        "The error is how far its value may be off once the pairs before it are measured.\n"
+        "count: from 1 to 800. Formulas and models are refused.");
 }
 
 }  // namespace burnish::python

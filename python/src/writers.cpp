@@ -51,8 +51,8 @@ std::string names_with(bool Format::*argument) {
 void bind_writers(nb::module_& m) {
   m.def("write_model", &write_model, nb::arg("path"), nb::arg("model"),
         nb::call_guard<nb::gil_scoped_release>(),
-        "Writes the native file, which open_source reads back to the last bit: a multi-part OpenEXR\nimage, "
-        "or where path ends in .burnish its compact twin, without notes.");
+        "Writes the file of a model, which open_source reads back to the last bit. It is a multi-part\n"
+        "OpenEXR image, or where path ends in .burnish the compact file without notes.");
   m.def("write_model", &write_baseline, nb::arg("path"), nb::arg("model"),
         nb::call_guard<nb::gil_scoped_release>(),
         "Writes a baseline's JSON, which open_source reads back to the last bit.");
@@ -61,14 +61,17 @@ void bind_writers(nb::module_& m) {
         nb::arg("count") = defaults.count, nb::arg("seed") = defaults.seed,
         nb::arg("entries") = defaults.entries, nb::arg("cells") = defaults.cells,
         nb::arg("notes") = defaults.notes,
-        fmt::format(
-            "Writes a source in another format and says what that lost, a phrase each.\n\n"
-            "format: {}.\n\"rgl\" is for Mitsuba's `measured` and pbrt-v4, \"exr\" has slices; \"model\" "
-            "(OpenEXR) and \"burnish\"\nare the files of a model. count, seed: samples drawn for {};\n"
-            "entries: a table's entries instead; cells: along each polar angle of {};\nnotes: those of the "
-            "fit are kept in {}.",
-            quoted_names(convert_formats()), names_with(&Format::takes_count),
-            names_with(&Format::takes_cells), names_with(&Format::takes_notes))
+        fmt::format("Writes a source in another format. Returns what was lost, one phrase for each loss.\n"
+                    "\n"
+                    "format: {}. \"rgl\" is for Mitsuba's `measured` and pbrt-v4; \"exr\" has slices; "
+                    "\"model\" (OpenEXR) and\n"
+                    "\"burnish\" are the files of a model.\n"
+                    "count, seed: the samples drawn for {}.\n"
+                    "entries: writes the entries of a table instead of drawn samples.\n"
+                    "cells: the cells along each polar angle of {}.\n"
+                    "notes: keeps the notes of the fit in {}.",
+                    quoted_names(convert_formats()), names_with(&Format::takes_count),
+                    names_with(&Format::takes_cells), names_with(&Format::takes_notes))
             .c_str());
 }
 

@@ -144,8 +144,8 @@ def test_lists_and_integers_and_mixtures_are_taken(model, ggx):
         ([[0, 0, 1], [0, 1]], "rows of unequal lengths"),
         ("up", "str"),
         (None, "NoneType"),
-        ([0, 0, 1j], "complex ones"),
-        ([True, False, True], "truth values"),
+        ([0, 0, 1j], "complex numbers"),
+        ([True, False, True], "booleans"),
     ):
         with pytest.raises(TypeError, match=f"^wi: expected an array of real numbers, found {found}$"):
             model.eval(wrong, up)
@@ -227,7 +227,7 @@ def test_arrays_on_other_devices_are_refused_with_their_owners_words(model):
     found = "^wi: expected an array of real numbers, found Elsewhere: cannot read card:0$"
     with pytest.raises(TypeError, match=found):
         model.eval(Elsewhere(), hemisphere(1))
-    with pytest.raises(TypeError, match="^wo: .* found complex ones$"):
+    with pytest.raises(TypeError, match="^wo: .* found complex numbers$"):
         model.eval([0, 0, 1], Lent(np.array([0, 0, 1j])))
 
 

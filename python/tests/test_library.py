@@ -143,7 +143,7 @@ def test_numbers_of_numpy_and_texts_serve_as_options(ggx):
     model = burnish.fit(ggx, model="pqp", samples=np.uint16(2000), floor=np.float64(1e-4), **how)
     assert model.notes["floor"] == 1e-4 and model.notes["smooth"] == 0.25
     assert burnish.fit(ggx, budget="0.5K", lobes=1).notes["budget"] == 512
-    with pytest.raises(TypeError, match="model: expected a value that an option takes"):
+    with pytest.raises(TypeError, match="model: expected None, a bool, a number, a string or a list, found"):
         burnish.fit(ggx, model=object())
     with pytest.raises(burnish.Error, match="found 'bugdet'; did you mean 'budget'"):
         burnish.fit(ggx, bugdet=2700)
@@ -429,9 +429,9 @@ def test_volumes_have_a_depth(volume):
     assert (use.projection_y, use.projection_z) == ("difference", "azimuth")
     logs = [np.log(t.values.astype(np.float64)) for t in volume.tables]
     np.testing.assert_array_equal(volume.with_log_tables(logs).tables[1].values, table.values)
-    with pytest.raises(burnish.Error, match="expected the shape of table 'g'"):
+    with pytest.raises(burnish.Error, match=r"expected shape \(3, 5, 7, 3\) of table 'g', found \(1, 15, 7, 3\)"):
         volume.with_log_tables([logs[0], logs[1].reshape(1, 15, 7, 3)])
-    with pytest.raises(burnish.Error, match="expected the shape of table 'g'"):
+    with pytest.raises(burnish.Error, match=r"expected shape \(3, 5, 7, 3\) of table 'g', found \(15, 7, 3\)"):
         volume.with_log_tables([logs[0], logs[1].reshape(15, 7, 3)])
 
 
@@ -498,7 +498,7 @@ def test_a_batch_opens_and_exports_as_the_command_line_does(tmp_path, cli):
     (other,) = burnish.batch([str(felt)], tmp_path / "other", model="pqp", to=["glsl"])
     for made in [other["files"][0]["path"], "exports/felt/felt.glsl"]:
         assert (tmp_path / "python" / made).read_bytes() != (tmp_path / "other" / made).read_bytes()
-    with pytest.raises(burnish.Error, match="expected exports, to=, with exact, mips and compressed=False"):
+    with pytest.raises(burnish.Error, match="expected to= with exact, mips or compressed=False, found no exports"):
         burnish.batch([str(felt)], tmp_path / "wrong", exact=True)
     with pytest.raises(burnish.Error, match="D66"):
         burnish.batch([str(felt)], tmp_path / "wrong", illuminant="D66")

@@ -171,7 +171,7 @@ def changed(array, index, value):
             TypeError,
             "values: expected an array of real numbers, found rows of un",
         ),
-        (lambda i, o, v: (i, o, v * 1j), TypeError, "values: expected an array of real numbers, found complex ones"),
+        (lambda i, o, v: (i, o, v * 1j), TypeError, "values: expected an array of real numbers, found complex numbers"),
         (lambda i, o, v: ("up", o, v), TypeError, "wi: expected an array of real numbers, found str"),
     ],
 )
@@ -328,7 +328,7 @@ def test_what_a_function_raises_ends_whatever_needed_it(use):
         ),
         (lambda wi, wo: 0.3, burnish.Error, r"function: expected shape .* for 200 pairs, found \(\)"),
         (lambda wi, wo: None, TypeError, "function: expected an array of real numbers, found NoneType"),
-        (lambda wi, wo: 1j * wi[:, 2], TypeError, "function: expected an array of real numbers, found complex ones"),
+        (lambda wi, wo: 1j * wi[:, 2], TypeError, "function: expected an array of real numbers, found complex numbers"),
         (lambda wi: wi, TypeError, ".*takes 1 positional argument but 2 were given"),
         (raising, LookupError, "'?mine'?$"),
     ],
