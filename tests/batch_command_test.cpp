@@ -32,7 +32,7 @@ TEST_F(BatchCommand, SaysAtTheEndWhatFailedAndHasTheRest) {
   EXPECT_THAT(outcome.output, HasSubstr("fitted     2 of 3 materials"));
   EXPECT_THAT(outcome.output, HasSubstr("failed     missing: missing.csv"));
   EXPECT_THAT(outcome.output,
-              HasSubstr("burnish: 1 of 3 materials were not fitted; the others are all there\n"));
+              HasSubstr("burnish: 1 of 3 materials were not fitted; all other materials were\n"));
   // The batch writes the same bits as the fit alone.
   ASSERT_EQ(run(fmt::format("{} fit ggx:alpha_x=0.3,alpha_y=0.3 -o {}{}", BURNISH_CLI,
                             (folder_.path / "alone.burnish").string(), kQuick))

@@ -59,7 +59,7 @@ TEST_F(BookCommand, SaysWhatIsWrong) {
   EXPECT_THAT(damaged.output, HasSubstr("left out   missing: missing.csv"));
   EXPECT_THAT(damaged.output, HasSubstr("an isotropic material"));
   EXPECT_THAT(damaged.output,
-              HasSubstr("burnish: 2 of 7 materials are not in the book; the others all are\n"));
+              HasSubstr("burnish: 2 of 7 materials are not in the book; all other materials are\n"));
   EXPECT_THAT(burnish("info book:a.book#ggx").output, HasSubstr("a material named 'ggx', found 5 others"));
   EXPECT_THAT(burnish("compare lambert a.book").output, HasSubstr("book:FILE#NAME"));
   EXPECT_EQ(burnish("fit lambert --book list -o m.burnish").status, 1);

@@ -228,8 +228,10 @@ TEST(CommandLine, PrintsNotesOfAFitToSamplesAsLines) {
             0);
   ASSERT_EQ(burnish(fmt::format("fit '{}' -o '{}' --budget 700", samples, model)).status, 0);
   const std::string said = burnish(fmt::format("info '{}'", model)).output;
-  for (const char* line : {"\ntarget       60 measured nodes\n", "\nexpected     relative ",
-                           " from theta_i = 0 15 ", "\nunseen       each node by the others: "})
+  for (const char* line :
+       {"\ntarget       60 measured nodes\n", "\nexpected     relative ", " from theta_i = 0 15 ",
+        "\n"
+        "unseen       each node, predicted by the other nodes: "})
     EXPECT_THAT(said, HasSubstr(line));
   EXPECT_THAT(said, testing::Not(HasSubstr("node_")));
 }

@@ -99,7 +99,8 @@ TEST_F(SurfaceCommand, SaysWhatIsExactAndWithoutData) {
   EXPECT_THAT(fit.output, HasSubstr("8 pictures (1 pair of light and view fitted);"));
   EXPECT_THAT(fit.output, HasSubstr("0 missing; 1 texel without data\n"));
   EXPECT_THAT(fit.output, HasSubstr("\nfitted     exact of 6 pictures\n"));
-  EXPECT_THAT(fit.output, HasSubstr("\nlobes      exact of what was held out"));
+  EXPECT_THAT(fit.output, HasSubstr("\n"
+                                    "lobes      exact of held-out pictures"));
 }
 
 TEST_F(SurfaceCommand, SurfacesBecomeTheirOtherFileAndTheirTexelsModels) {
@@ -204,12 +205,13 @@ TEST_F(SurfaceCommand, WritesOverNothingThatItReads) {
   fs::create_symlink("capture/00001.exr", file("linked"));
   fs::create_hard_link(file("capture/capture.json"), file("form.png"));
   refused(1, "capture' -o '{0}/capture/00001.exr'",
-          "expected a file to write that is not read, found one of");
-  refused(1, "capture' -o '{0}/linked'", "linked: expected a file to write that is not read, found one of");
+          "expected an output that is not also an input, found one of");
+  refused(1, "capture' -o '{0}/linked'",
+          "linked: expected an output that is not also an input, found one of");
   refused(1, "capture' -o '{0}/w' --picture '{0}/form.png'",
           "form.png: expected a file to write that is not");
   fs::create_hard_link(file("capture/00002.exr"), file("v.part"));  // a fit that begins anew removes it
-  refused(1, "capture' -o '{0}/v'", "v.part: expected a file to write that is not read, found one of");
+  refused(1, "capture' -o '{0}/v'", "v.part: expected an output that is not also an input, found one of");
   EXPECT_TRUE(fs::exists(file("v.part")));
   EXPECT_EQ(read(file("capture/00001.exr")), picture);
   EXPECT_EQ(read(file("capture/capture.json")), form);

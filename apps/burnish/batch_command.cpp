@@ -162,7 +162,7 @@ void run(const BatchArguments& arguments, const CLI::App& verb) {
     print_text(arguments, summary, failed, skipped);
   std::fflush(stdout);
   if (!failed.empty())
-    throw Error(fmt::format("{} of {} materials were not fitted; the others are all there", failed.size(),
+    throw Error(fmt::format("{} of {} materials were not fitted; all other materials were", failed.size(),
                             summary.total));
 }
 
@@ -177,17 +177,18 @@ void add_folder_arguments(CLI::App& verb, BatchArguments& arguments) {
       ->required();
   verb.add_flag("--resume", options.resume,
                 "Goes on in the folder of an earlier batch, and does again only what is missing or broken.");
-  verb.add_option("--memory", options.memory,
-                  "Takes at most so many bytes, as 4G, by fitting fewer materials at once (default: four "
-                  "fifths of what is free).")
+  verb.add_option(
+          "--memory", options.memory,
+          "Takes at most this many bytes, such as 4G, by fitting fewer materials at once (default: four "
+          "fifths of what is free).")
       ->transform(CLI::AsSizeValue(false));
-  verb.add_option("--threads", options.threads, "Uses at most so many threads; 0 uses all.")
+  verb.add_option("--threads", options.threads, "Uses at most this many threads; 0 uses all.")
       ->check(in_range(0, 1024));
   verb.add_option("--patience", arguments.patience,
-                  "Takes over the work of another machine that said nothing for so many seconds.")
+                  "Takes over the work of another machine that said nothing for this many seconds.")
       ->check(in_range(0.1, 86400.0))
       ->capture_default_str();
-  verb.add_option("--studio", options.studio, "Says where the studio lies, as seen from the page.")
+  verb.add_option("--studio", options.studio, "Sets the link to the studio, relative to the page.")
       ->capture_default_str();
   verb.add_flag("--exr", arguments.exr, "Writes models as OpenEXR with notes of the fit, not as .burnish.");
 }
@@ -196,12 +197,13 @@ void add_export_arguments(CLI::App& verb, BatchArguments& arguments) {
   const auto names = export_target_names();
   ExportOptions& exports = arguments.batch.exports;
   CLI::Option* to =
-      verb.add_option("--to", arguments.to, "Also exports each model as these, separated by commas.")
+      verb.add_option("--to", arguments.to, "Also exports each model to these targets, separated by commas.")
           ->delimiter(',')
           ->check(one_of({names.begin(), names.end()}))
           ->allow_extra_args(false)
           ->excludes("--method");
-  verb.add_flag("--exact", exports.exact, "Writes shaders of --to that weigh texels themselves, in floats.")
+  verb.add_flag("--exact", exports.exact,
+                "Writes shaders of --to that interpolate texels in floats, not by the texture unit.")
       ->needs(to);
   verb.add_flag("--mips", exports.mips, "Writes KTX2 of --to with mip levels.")->needs(to);
   verb.add_flag("--plain", arguments.plain, "Writes textures of --to without compression.")->needs(to);
@@ -212,10 +214,9 @@ void add_export_arguments(CLI::App& verb, BatchArguments& arguments) {
 void add_batch_command(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("batch", "Fit a whole library: a folder or a list of BRDFs");
   verb->footer(
-      "Models go to OUT/models, their figures to OUT/library.sqlite, and OUT/index.html shows them all. What "
-      "cannot "
-      "be fitted is said at the end, with exit status 1. See docs/guide/library.md and "
-      "docs/guide/cluster.md.\n"
+      "Models go to OUT/models, their figures to OUT/library.sqlite, and OUT/index.html shows them all. "
+      "Materials that cannot be fitted are listed at the end, with exit status 1. See docs/guide/library.md "
+      "and docs/guide/cluster.md.\n"
       "Examples: burnish batch measurements -o library\n"
       "          burnish batch list.txt -o library --budget 2700 --memory 4G --to glsl\n"
       "          burnish batch list.txt -o library --resume\n"

@@ -65,16 +65,16 @@ void make(const BookArguments& arguments) {
   print_made(arguments, made, skipped.size());
   std::fflush(stdout);
   if (!made.left_out.empty())
-    throw Error(fmt::format("{} of {} materials are not in the book; the others all are",
+    throw Error(fmt::format("{} of {} materials are not in the book; all other materials are",
                             made.left_out.size(), entries.size()));
 }
 
 }  // namespace
 
 void add_book_command(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("book",
-                                      "Write what a library of materials shares, and a few bytes a material: "
-                                      "a prior for sparse measurements");
+  CLI::App* verb = app.add_subcommand(
+      "book",
+      "Write a book: tables that the materials of a library share, as a prior for sparse measurements");
   verb->footer(
       "A book's material is opened as book:FILE#NAME; `burnish fit PAIRS --book FILE` completes a few "
       "measured pairs. "
@@ -90,24 +90,25 @@ void add_book_command(CLI::App& app) {
       ->required();
   verb->add_option("-o,--output,--out", arguments->out, "Names the file to write.")->required();
   CLI::Option* bytes =
-      verb->add_option("--budget,--bytes", arguments->options.bytes,
-                       "Spends at most so many bytes on what the materials share; K counts as 1024.")
+      verb->add_option(
+              "--budget,--bytes", arguments->options.bytes,
+              "Spends at most this many bytes on the tables that the materials share; K counts as 1024.")
           ->transform(CLI::AsSizeValue(false))
           ->capture_default_str();
   CLI::Option* each =
       verb->add_option("--bytes-a-material", arguments->options.bytes_a_material,
-                       "Spends at most so many bytes on each material's weights, one a weight.")
+                       "Spends at most this many bytes on each material's weights, one byte a weight.")
           ->check(in_range(std::size_t{4}, MaterialBook::kMaxComponents))
           ->capture_default_str();
   verb->add_option("--shared", arguments->shared,
-                   "Takes the shared part of this book, and finds weights alone.")
+                   "Takes the shared tables of this book, and finds weights alone.")
       ->excludes(bytes)
       ->excludes(each);
   verb->add_option("--seed", arguments->options.seed, "Chooses the pairs that are drawn of each material.")
       ->check(at_least_zero())
       ->capture_default_str();
   add_open_options(*verb, arguments->open);
-  verb->add_option("--threads", arguments->threads, "Uses at most so many threads; 0 uses all.")
+  verb->add_option("--threads", arguments->threads, "Uses at most this many threads; 0 uses all.")
       ->check(in_range(0, 1024));
   verb->add_flag("--json", arguments->json, "Prints the summary as JSON.");
   verb->callback([arguments] { make(*arguments); });

@@ -126,8 +126,10 @@ ManualPage page(const Verb& verb, std::string_view version, const std::string& s
       text += fmt::format(".TP\n.B {}\n{}\n", roff(below.name), roff(below.description));
   }
   text += fmt::format(
-      ".SH EXIT STATUS\n0 success, 1 bad input, 2 a command line that says nothing sensible.\n"
-      ".SH SEE ALSO\n{}\n",
+      ".SH EXIT STATUS\n"
+      "0 success, 1 bad input, 2 a wrong command line.\n"
+      ".SH SEE ALSO\n"
+      "{}\n",
       see_also);
   return {name + ".1", text};
 }

@@ -127,8 +127,10 @@ void print_compared(std::span<const ComparedFigures> figures, const Measurement*
   print_albedos(figures);
   const ErrorFigures& first = figures.front().figures;
   if (first.unknown_fraction > 0 || first.unknown_pixels > 0)
-    fmt::print("left out: {:.1f} % of the direction pairs and {} pixels, where a side knows nothing\n",
-               100 * first.unknown_fraction, first.unknown_pixels);
+    fmt::print(
+        "left out: {:.1f} % of the direction pairs and {} pixels, where the reference or a model has no "
+        "value\n",
+        100 * first.unknown_fraction, first.unknown_pixels);
 }
 
 // Throws Error where one is reflection and the other transmission. Formulas are compared with both.
@@ -201,21 +203,21 @@ void add_compare_command(CLI::App& app) {
   verb->add_option("MODELS", arguments->models, "Names the BRDFs to compare with it.")->required();
   verb->add_option("-o,--output,--out", arguments->folder,
                    "Writes a report with pictures into this folder: index.html and its parts.");
-  verb->add_option("--count", arguments->figures.count, "Compares at so many direction pairs.")
+  verb->add_option("--count", arguments->figures.count, "Compares at this many direction pairs.")
       ->check(in_range(1, 100'000'000))
       ->capture_default_str();
   verb->add_option("--seed", arguments->figures.seed, "Chooses the direction pairs.")
       ->check(at_least_zero())
       ->capture_default_str();
   verb->add_option("--target", arguments->target,
-                   "Scores the function between what was measured too, or the measured nodes alone (default: "
-                   "the function, and of measurements both).")
+                   "Scores the function between the nodes too, or the measured nodes alone (default: the "
+                   "function; for measurements both).")
       ->check(one_of({"function", "nodes"}));
   verb->add_option(
       "--only", arguments->only,
       "Scores these nodes alone: half=0, half=1 (of a checkerboard) or theta_i=K, counted from 0.");
   verb->add_option("--repeat", arguments->repeat,
-                   "Scores a second measurement of the same surface too, as the line to reach.");
+                   "Also scores a second measurement of the same surface, whose error is the one to reach.");
   verb->add_flag("--no-symmetrize", arguments->no_symmetrize,
                  "Compares f(wi, wo) as it is, not its mean with f(wo, wi).");
   verb->add_flag("--json", arguments->json, "Prints the figures as JSON.");

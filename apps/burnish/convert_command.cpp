@@ -158,9 +158,8 @@ void add_convert_command(CLI::App& app) {
                          "Convert a BRDF to another format, see `burnish help formats`; a model or a "
                          "surface to its other file");
   verb->footer(
-      "ASTM and CSV have the samples of a scattered source, the entries of a table, and drawn samples of the "
-      "others. "
-      "What is lost is said on the standard error output.\n"
+      "ASTM and CSV have the samples of a scattered source, the entries of a table, and drawn samples of any "
+      "other BRDF. Losses are listed on the standard error output.\n"
       "Examples: burnish convert paint.bsdf paint.binary\n"
       "          burnish convert paint.binary paint.csv\n"
       "          burnish convert model.exr model.burnish\n"
@@ -175,18 +174,18 @@ void add_convert_command(CLI::App& app) {
                    "Writes this format, not the one that OUT's ending names; exr of a model writes slices.")
       ->check(one_of({names.begin(), names.end()}));
   verb->add_option("--cells", arguments->options.cells,
-                   fmt::format("Makes so many cells along each polar angle of {}, twice as many along the "
+                   fmt::format("Makes this many cells along each polar angle of {}, twice as many along the "
                                "azimuth.",
                                formats_with(&Format::takes_cells, "and")))
       ->check(in_range(2, 1000))
       ->capture_default_str();
   auto* count = verb->add_option("--count", arguments->options.count,
-                                 fmt::format("Draws so many samples for {}, instead of a table's entries.",
+                                 fmt::format("Draws this many samples for {}, instead of a table's entries.",
                                              formats_with(&Format::takes_count)))
                     ->check(in_range(1, 10000000))
                     ->capture_default_str();
   verb->add_flag("--entries", arguments->options.entries,
-                 "Writes a table's entries to openmaterial too; astm and csv have them without it.")
+                 "Writes a table's entries to openmaterial too; astm and csv get them without this option.")
       ->excludes(count);
   verb->add_flag("--notes", arguments->options.notes, "Keeps a model's notes of its fit in a .burnish file.");
   verb->add_flag("--json", arguments->json, "Prints what was written and lost as JSON.");

@@ -16,7 +16,7 @@ namespace burnish::cli {
 
 void add_describe_command(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
-      "describe", "What packages hold of the command line: manual pages, completions, a description");
+      "describe", "Write the manual pages, completions and description of the command line, for packages");
   verb->group("");  // hidden from --help: the verb is for packagers of burnish
   verb->footer(
       "Examples: burnish describe -o share/man/man1\n"

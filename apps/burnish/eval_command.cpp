@@ -197,11 +197,13 @@ void add_eval_command(CLI::App& app) {
       app.add_subcommand("eval", "Evaluate a BRDF at direction pairs: f_r in 1/sr, without the cosine");
   verb->footer(
       "The header of DIRECTIONS is wi_x,wi_y,wi_z,wo_x,wo_y,wo_z or theta_i,phi_i,theta_o,phi_o (degrees). "
-      "wo of a transmission lies below the surface: wo_z < 0, theta_o from 90 to 180. "
-      "On the terminal directions stand beside the values, in a file where asked; nan stands where a "
-      "measurement knows nothing.\n"
+      "wo of a transmission lies below the surface: wo_z < 0, theta_o from 90 to 180. The terminal shows "
+      "directions beside the values, a file only with --with-directions. The value is nan where a "
+      "measurement has none.\n"
       "Examples: burnish eval paint.exr directions.csv -o values.csv --with-directions\n"
-      "          printf 'theta_i,theta_o\\n30,-30\\n' | burnish eval paint.exr -");
+      "          printf 'theta_i,theta_o\\\n"
+      "30,-30\\\n"
+      "' | burnish eval paint.exr -");
   auto arguments = std::make_shared<EvalArguments>();
   add_source_arguments(*verb, arguments->source);
   verb->add_option("DIRECTIONS", arguments->directions,

@@ -94,8 +94,7 @@ ExportedFiles exported_model(const ExportArguments& arguments, const Source& sou
   if (source.findings.transmits())
     fmt::print(
         stderr,
-        "burnish: {}: warning: The model is transmission: what is exported takes wo mirrored through the "
-        "surface.\n",
+        "burnish: {}: warning: The model is a transmission: exports take wo mirrored through the surface.\n",
         arguments.model);
   options.environment = environment_of(arguments.environment);
   return export_model(brdf, options);
@@ -175,11 +174,10 @@ void add_export_command(CLI::App& app) {
                                       "glTF, for three.js or Babylon.js, or as a "
                                       "page");
   verb->footer(
-      "Surfaces become shaders, textures, modules of three.js and pages; OpenPBR all but textures; Phong's "
-      "and Blinn's "
-      "models shaders. "
-      "Every shader comes with its textures but C++, which has them inside; NAME.json says what is in the "
-      "folder and what an evaluation costs. See docs/guide/shaders.md and docs/guide/export.md.\n"
+      "A surface becomes shaders, textures, modules of three.js and pages. OpenPBR becomes all but textures, "
+      "Phong's and Blinn's models become shaders. Every shader comes with its textures, but C++ has them "
+      "inside. NAME.json lists the files and the cost of an evaluation. See docs/guide/shaders.md and "
+      "docs/guide/export.md.\n"
       "Examples: burnish export paint.exr --to glsl,html -o paint\n"
       "          burnish export paint.exr --to glsl_es --to html --environment studio -o paint\n"
       "          burnish export paint.exr --to glsl_es --to wgsl --half -o paint\n"
@@ -202,16 +200,17 @@ void add_export_command(CLI::App& app) {
       ->required();
   verb->add_option("--name", arguments->name, "Names functions and files (default: as MODEL is named).");
   verb->add_option("--power", arguments->power,
-                   "Computes the power of phong and blinn_phong so, see `burnish specular list` (default: "
-                   "the cheapest within one of 255 levels).");
+                   "Computes the power of phong and blinn_phong by this method of `burnish specular list` "
+                   "(default: the cheapest within one of 255 levels).");
   add_environment_argument(*verb, arguments->environment);
   CLI::Option* const cells =
       verb->add_option("--cells", arguments->cells,
-                       "Makes so many cells along each polar angle of an mdl measurement.")
+                       "Makes this many cells along each polar angle of an mdl measurement.")
           ->check(in_range(2, 1000))
           ->capture_default_str();
   CLI::Option* const exact =
-      verb->add_flag("--exact", arguments->exact, "Writes shaders that weigh texels themselves, in floats.");
+      verb->add_flag("--exact", arguments->exact,
+                     "Writes shaders that interpolate texels in floats, not by the texture unit.");
   verb->add_flag("--half", arguments->half,
                  "Writes shaders that multiply texels in half precision, within 1 %; cpp stays single.")
       ->excludes(exact);
@@ -228,7 +227,7 @@ void add_export_command(CLI::App& app) {
   verb->add_option("--space", arguments->space, "Puts textures into this register space of hlsl.")
       ->check(in_range(0, kMostBindings));
   verb->add_flag("--appended", arguments->appended,
-                 "Writes shaders to stand behind others in one file: without `enable f16` of wgsl.");
+                 "Writes shaders that are appended to others in one file: without `enable f16` of wgsl.");
   verb->add_flag("--mips", arguments->mips,
                  "Writes KTX2 with mip levels, which average over the directions of a texel.");
   verb->add_flag("--plain", arguments->plain, "Writes KTX2 without Zstandard.");

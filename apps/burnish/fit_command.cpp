@@ -76,13 +76,13 @@ std::string text_of(const ErrorLevel& level) {
 
 void print(const CompletionReport& report) {
   const auto prior = [](const CompletionPrior& p) {
-    return fmt::format("{} of the book's spread, {} of what it leaves, noise {:.0f} %", p.spread, p.residual,
+    return fmt::format("{} of the book's spread, {} of its residual, noise {:.0f} %", p.spread, p.residual,
                        100 * std::sqrt(p.noise));
   };
   fmt::print("completed  {} by a book of {}{}\n", counted(report.used, "pair"),
              counted(report.materials, "material"),
              report.nearest.empty() ? "" : fmt::format(", near {}", report.nearest));
-  fmt::print("believed   brightness {}; colour {}\n", prior(report.brightness), prior(report.colour));
+  fmt::print("prior      brightness {}; colour {}\n", prior(report.brightness), prior(report.colour));
   fmt::print("relative   {:.4f} at the pairs, {:.4f} left out in turn\n", report.relative,
              report.relative_left_out);
 }
@@ -96,14 +96,14 @@ void print(const BudgetChoice& choice) {
         return fmt::format("no worse than the measurement itself ({}; itself {})", text_of(last().error),
                            text_of(*choice.noise));
       case BudgetStop::floor:
-        return fmt::format("relative {:.4f} is little", last().error.relative);
+        return fmt::format("relative {:.4f} is small enough", last().error.relative);
       case BudgetStop::gain:
         return fmt::format("{} bytes would hardly help: relative {:.4f} instead of {:.4f}", last().bytes,
                            last().error.relative, choice.trials[choice.trials.size() - 2].error.relative);
       case BudgetStop::largest:
-        return std::string("the most that is tried");
+        return std::string("the largest budget that is tried");
       case BudgetStop::cross_validation:
-        return std::string("what predicts held-out samples best");
+        return std::string("the best prediction of held-out samples");
     }
     return std::string();
   }();
@@ -124,7 +124,7 @@ void print(const NodesReport& report) {
     fmt::print("{:<10} relative {:.4f}, rms_log {:.4f}, log_cos {:.4f} at {} nodes\n", name, f.relative,
                f.rms_log, f.log_cos, f.count);
   };
-  fmt::print("target     the measured nodes (--target function fits what their owner makes of them)\n");
+  fmt::print("target     the measured nodes (--target function fits the function that interpolates them)\n");
   if (report.outliers > 0)
     fmt::print("outliers   {} left out: samples around {} contradict {}\n",
                counted(report.outliers, "sample"), report.outliers == 1 ? "it" : "them",
@@ -340,9 +340,11 @@ void add_material_arguments(CLI::App& verb, FitCommand& arguments) {
       "--to", arguments.to, "Fits a renderer's material instead, and writes its parameters as JSON.");
   to->check(one_of({targets.begin(), targets.end()}));
   verb.add_flag("--simple", arguments.simple,
-                "Fits OpenPBR's base and specular inputs alone, and says beside them what layers would give.")
+                "Fits OpenPBR's base and specular inputs alone, and also prints the errors with layers.")
       ->needs(to);
-  verb.add_flag("--alone", arguments.alone, "Fits nothing else beside the material of --to.")->needs(to);
+  verb.add_flag("--alone", arguments.alone,
+                "Fits the material of --to alone, without a factored model to compare.")
+      ->needs(to);
 }
 
 }  // namespace
@@ -364,7 +366,7 @@ void add_fit_command(CLI::App& app) {
                    "Names the model's file: compact where it ends in .burnish, else OpenEXR, and JSON with "
                    "--method or --to.");
   add_fit_arguments(*verb, arguments->how);
-  verb->add_option("--threads", arguments->threads, "Uses at most so many threads; 0 uses all.")
+  verb->add_option("--threads", arguments->threads, "Uses at most this many threads; 0 uses all.")
       ->check(in_range(0, 1024));
   verb->add_flag("--json", arguments->json, "Prints the summary as JSON.");
   add_material_arguments(*verb, *arguments);

@@ -114,10 +114,11 @@ void print_surface_report(const FitSurfaceArguments& arguments, const SurfaceRep
   fmt::print("fitted     {}\n", text_of(report.fitted, report));
   if (report.held_out.pictures > 0) fmt::print("held out   {}\n", text_of(report.held_out, report));
   for (const BaselineScore& other : others)
-    fmt::print("{:<10} {}, {:.3g} bytes a texel\n", other.method,
-               other.held_out ? psnr_text(*other.held_out) + " of what was held out" : "nothing was held out",
-               other.bytes_a_texel);
-  fmt::print("written    {} in {:.2f} s, of these {:.2f} s weights of all texels\n", arguments.out,
+    fmt::print(
+        "{:<10} {}, {:.3g} bytes a texel\n", other.method,
+        other.held_out ? psnr_text(*other.held_out) + " of held-out pictures" : "no picture was held out",
+        other.bytes_a_texel);
+  fmt::print("written    {} in {:.2f} s, {:.2f} s of them for the weights of all texels\n", arguments.out,
              report.seconds, report.weight_seconds);
 }
 
@@ -171,8 +172,8 @@ void check_inputs_stay(const FitSurfaceArguments& arguments, const Capture& capt
     const auto is_out = [&](const fs::path& path) { return fs::equivalent(path, out, none); };
     if (!fs::is_regular_file(out, none)) continue;
     if (std::ranges::any_of(read, is_out))
-      throw Error::in_file(out, "a file to write that is not read", "one of the capture");
-    if (is_out(arguments.book)) throw Error::in_file(out, "a file to write that is not read", "the book");
+      throw Error::in_file(out, "an output that is not also an input", "a file of the capture");
+    if (is_out(arguments.book)) throw Error::in_file(out, "an output that is not also an input", "the book");
   }
 }
 
@@ -232,11 +233,11 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
       ->required();
   verb->add_option("-o,--output,--out", arguments->out, "Names the surface's file, .burnish or .exr.")
       ->required();
-  verb->add_option("--lobes", options.lobes, "Fits so many lobes.")
+  verb->add_option("--lobes", options.lobes, "Fits this many lobes.")
       ->check(in_range(std::size_t{1}, kMaxSurfaceLobes))
       ->capture_default_str();
   verb->add_option("--lobe-bytes", options.lobe_bytes,
-                   "Spends so many bytes on each lobe's tables; K counts as 1024.")
+                   "Spends this many bytes on each lobe's tables; K counts as 1024.")
       ->transform(CLI::AsSizeValue(false))
       ->capture_default_str();
   verb->add_option("--book", arguments->book,
@@ -249,21 +250,21 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
       ->check(one_of({"auto", "capture", "flat", "estimate"}))
       ->capture_default_str();
   verb->add_option("--pictures", arguments->pictures,
-                   "Takes so many of a BTF's pictures, spread evenly; 0 takes all.")
+                   "Takes this many of a BTF's pictures, spread evenly; 0 takes all.")
       ->capture_default_str();
   verb->add_option(
           "--rounds", options.rounds,
-          "Fits lobes and weights in turn for so many rounds (default: 9, where normals are estimated 24).")
+          "Fits lobes and weights in turn for this many rounds (default: 9, where normals are estimated 24).")
       ->check(in_range(1, kMaxSurfaceRounds));
   verb->add_option("--memory", options.tile_bytes,
-                   "Holds at most so many bytes of pictures in memory; M counts as 1024^2.")
+                   "Holds at most this many bytes of pictures in memory; M counts as 1024^2.")
       ->transform(CLI::AsSizeValue(false));
   verb->add_option("--seed", options.seed, "Chooses the texels and pixels that lobes are fitted to.")
       ->check(at_least_zero())
       ->capture_default_str();
   verb->add_flag("--widen", options.widened,
                  "Adds copies of the lobes for bumps that mip levels lose, each for one fetch more a light.");
-  verb->add_option("--threads", arguments->threads, "Uses at most so many threads; 0 uses all.")
+  verb->add_option("--threads", arguments->threads, "Uses at most this many threads; 0 uses all.")
       ->check(in_range(0, 1024));
   verb->add_option("--picture", arguments->picture,
                    "Writes a PNG with a held-out picture, the surface in its place, and the lobes' weights.");

@@ -34,7 +34,9 @@ nlohmann::ordered_json formats_json() {
 
 void print_formats() {
   fmt::print(
-      "Files are known by their content. `burnish convert IN OUT --to NAME` writes those with a name.\n\n");
+      "Files are recognized by their content. `burnish convert IN OUT --to NAME` writes the formats with a "
+      "name below --to.\n"
+      "\n");
   fmt::print("{:23} {:13} {:24} {:6} {}\n", "format", "--to", "usual ending", "", "holds");
   for (const Format& f : formats())
     fmt::print("{:23} {:13} {:24} {:6} {}\n", f.title, f.to, f.endings,
@@ -60,9 +62,9 @@ nlohmann::ordered_json models_json() {
 
 void print_models() {
   fmt::print(
-      "An analytic BRDF is MODEL or MODEL:NAME=VALUE,NAME=VALUE; what is left out has its default. Colours "
-      "may be\n"
-      "three numbers, RED/GREEN/BLUE: openpbr:base_color=0.5/0.1/0.05,coat_weight=1\n");
+      "An analytic BRDF is MODEL or MODEL:NAME=VALUE,NAME=VALUE; other parameters have their defaults. "
+      "Colours may\n"
+      "be three numbers, RED/GREEN/BLUE: openpbr:base_color=0.5/0.1/0.05,coat_weight=1\n");
   for (const AnalyticModel& model : analytic_models()) {
     fmt::print("\n{}: {}\n", model.name, model.description);
     for (const AnalyticParameter& p : model.parameters)

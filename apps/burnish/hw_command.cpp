@@ -32,16 +32,16 @@ std::shared_ptr<UnitArguments> add_unit_options(CLI::App& sub) {
                            info.max_depth);
   for (const ShippedUnit& unit : shipped_units())
     units += (units.empty() ? "" : ", ") + std::string(unit.name);
-  sub.add_option("--method", arguments->method, "Computes the power so: " + methods + ".")
+  sub.add_option("--method", arguments->method, "Computes the power by this method: " + methods + ".")
       ->capture_default_str();
-  sub.add_option("--cos-bits", arguments->config.cosine_bits, "Gives the input so many fraction bits.")
+  sub.add_option("--cos-bits", arguments->config.cosine_bits, "Gives the input this many fraction bits.")
       ->capture_default_str();
   sub.add_option("--coef-bits", arguments->config.coefficient_bits,
-                 "Gives coefficients so many bits; 0 takes the method's own.");
-  sub.add_option("--out-bits", arguments->config.output_bits, "Gives the output so many bits.")
+                 "Gives coefficients this many bits; 0 takes the method's own.");
+  sub.add_option("--out-bits", arguments->config.output_bits, "Gives the output this many bits.")
       ->capture_default_str();
   sub.add_option("--depth", arguments->config.depth,
-                 "Takes so many clocks from input to output; 0 takes the fewest.");
+                 "Takes this many clocks from input to output; 0 takes the fewest.");
   sub.add_option("--input", arguments->input, "Takes a cosine c, or a versine v = 1 - c.")
       ->check(one_of({"cosine", "versine"}))
       ->capture_default_str();
@@ -84,7 +84,7 @@ void add_generate(CLI::App& verb) {
   auto unit_arguments = add_unit_options(*sub);
   auto arguments = std::make_shared<Arguments>();
   sub->add_option("--name", arguments->name, "Names the module (default: as the unit or method is named).");
-  sub->add_option("--vectors", arguments->vectors, "Writes so many golden vectors.")
+  sub->add_option("--vectors", arguments->vectors, "Writes this many golden vectors.")
       ->check(in_range(1, 1'000'000))
       ->capture_default_str();
   sub->add_flag("--all", arguments->all,
@@ -206,8 +206,8 @@ void print_error(const SpecularUnit& unit, const ErrorArguments& arguments) {
 }
 
 void add_error(CLI::App& verb) {
-  CLI::App* sub =
-      verb.add_subcommand("error", "Largest error against cos^exponent over every exponent and input");
+  CLI::App* sub = verb.add_subcommand(
+      "error", "Measure the largest error against cos^exponent over every exponent and input");
   sub->footer("Example: burnish hw error --method exact --out-bits 10");
   auto unit_arguments = add_unit_options(*sub);
   auto arguments = std::make_shared<ErrorArguments>();
@@ -217,10 +217,10 @@ void add_error(CLI::App& verb) {
   sub->add_option("--last", arguments->last, "Ends at this exponent.")
       ->check(in_range(1, kUnitMaxExponent))
       ->capture_default_str();
-  sub->add_option("--exponent-step", arguments->exponent_step, "Takes every so manyth exponent alone.")
+  sub->add_option("--exponent-step", arguments->exponent_step, "Steps through the exponents by this number.")
       ->check(in_range(1, 1000))
       ->capture_default_str();
-  sub->add_option("--input-step", arguments->input_step, "Takes every so manyth input alone.")
+  sub->add_option("--input-step", arguments->input_step, "Steps through the inputs by this number.")
       ->check(in_range(1, 1 << 20))
       ->capture_default_str();
   sub->add_flag("--json", arguments->json, "Prints the same as JSON.");

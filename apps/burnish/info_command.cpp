@@ -156,9 +156,8 @@ void add_info_command(CLI::App& app) {
   auto as_json = std::make_shared<bool>(false);
   auto target = std::make_shared<std::string>("function");
   add_source_arguments(*verb, *arguments);
-  verb->add_option(
-          "--target", *target,
-          "Describes the function that its owner makes of a measurement, or the nodes that were measured.")
+  verb->add_option("--target", *target,
+                   "Describes the function that interpolates the measured nodes, or the nodes themselves.")
       ->check(one_of({"function", "nodes"}))
       ->capture_default_str();
   verb->add_flag("--json", *as_json, "Prints the same as JSON.");

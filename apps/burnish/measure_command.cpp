@@ -110,13 +110,13 @@ void add_measure_command(CLI::App& app) {
       ->excludes(positional);
   CLI::Option* const next =
       verb->add_option("--next", arguments->next,
-                       "Lists so many directions, in degrees, that lower a measurement's expected error "
-                       "most, each with the error once those before are read.")
+                       "Lists this many directions, in degrees, that lower a measurement's expected error "
+                       "most, each with the error once those before are measured.")
           ->check(in_range(std::size_t{1}, kMostNext));
   verb->add_option("-o,--output,--out", arguments->out,
                    "Names the CSV file to write, with --surface the folder; only --next does without.");
   // The limit is ten million samples, which are a gigabyte of text.
-  verb->add_option("--count", arguments->measurement.count, "Draws so many samples.")
+  verb->add_option("--count", arguments->measurement.count, "Draws this many samples.")
       ->excludes(next)
       ->check(in_range(1, 10000000))
       ->capture_default_str();

@@ -64,11 +64,12 @@ std::string nodes_text(const NodesInfo& info) {
                                     ? fmt::format(", root mean square {:.3g} 1/sr", quality.negative_rms)
                                     : ""));
   // These lines say how well each node is predicted.
-  line("function", "made reciprocal, it knows them: " + errors(function));
+  line("function", "errors at the nodes, made reciprocal: " + errors(function));
   if (quality.held_out)
-    line("unseen", "nodes, by the function between the others: " + errors(*quality.held_out));
+    line("unseen", "errors of the function between the other nodes: " + errors(*quality.held_out));
   if (quality.held_out_incidences)
-    line("unseen", "whole theta_i, by one of the others: " + errors(*quality.held_out_incidences));
+    line("unseen",
+         "errors of a whole theta_i, predicted by the others: " + errors(*quality.held_out_incidences));
   return text;
 }
 

@@ -96,7 +96,7 @@ class Notes {
     more(take_all({{"loss", ""}, {"smooth", ""}, {"floor", ""}, {"reweightings", ""}}));
     add("by", how);
     if (const std::string symmetrized = take("symmetrized"); symmetrized == "yes")
-      add("made", "reciprocal: directions exchanged were averaged before");
+      add("made", "reciprocal: values of exchanged directions were averaged first");
     take("objective");  // serves the solver alone
     for (const char* said_before : {"part", "band"}) take(said_before);
   }
@@ -114,7 +114,7 @@ class Notes {
     if (stop != choice->end())
       add("bytes by", "--budget auto, which stopped at " + stop_text(plain_text(*stop)));
     if (const auto noise = choice->find("noise"); noise != choice->end())
-      add("itself", "the measurement scores " + plain_text(*noise));
+      add("itself", "the error of the measurement is " + plain_text(*noise));
     if (const auto tried = choice->find("trials"); tried != choice->end() && tried->is_array())
       for (const Json& trial : *tried) add("tried", plain_text(trial));
     json_.erase("budget_choice");
@@ -122,9 +122,9 @@ class Notes {
 
   static std::string stop_text(const std::string& stop) {
     if (stop == "noise") return "the measurement's own noise";
-    if (stop == "floor") return "an error that is little";
+    if (stop == "floor") return "an error that is small enough";
     if (stop == "gain") return "little gain";
-    if (stop == "largest") return "the largest that is tried";
+    if (stop == "largest") return "the largest budget that is tried";
     if (stop == "cross-validation") return "the best prediction of held-out samples";
     return stop;
   }
@@ -154,9 +154,9 @@ class Notes {
       add("target", target);
     if (const std::string left_out = take("outliers"); !left_out.empty())
       add("outliers", left_out + " samples left out");
-    figures("node_fit", "nodes", "those that were fitted");
-    figures("node_test", "left out", "nodes that were left out");
-    figures("node_held_out", "unseen", "each node by the others");
+    figures("node_fit", "nodes", "the fitted nodes");
+    figures("node_test", "left out", "the nodes left out");
+    figures("node_held_out", "unseen", "each node, predicted by the other nodes");
     if (const auto found = json_.find("node_expected"); found != json_.end() && found->is_object()) {
       std::string text = found->contains("relative") ? "relative " + plain_text((*found)["relative"]) : "";
       text += ", measured or not";
@@ -201,7 +201,7 @@ Lines notes_lines(const std::string& notes) {
 }
 
 std::string ending_text(const std::string& reason) {
-  if (reason == "iteration limit") return "all that were planned";
+  if (reason == "iteration limit") return "the limit";
   return reason;
 }
 

@@ -255,7 +255,7 @@ void add_render_command(CLI::App& app) {
   verb->add_option("--mesh", arguments->mesh,
                    "Draws a sphere, teapot, torus-knot or plane, or an OBJ or glTF file.")
       ->capture_default_str();
-  verb->add_option("--vertices", arguments->vertices, "Gives a built-in mesh about so many vertices.")
+  verb->add_option("--vertices", arguments->vertices, "Gives a built-in mesh about this many vertices.")
       ->check(in_range(64, 1 << 22))
       ->capture_default_str();
   verb->add_option("--material", arguments->materials,
@@ -266,9 +266,10 @@ void add_render_command(CLI::App& app) {
                    "Adds a point light x,y,z[:intensity] or x,y,z:r,g,b (default: 2,3,4:20).")
       ->allow_extra_args(false);
   add_environment_argument(*verb, arguments->environment);
-  verb->add_option("--draws", arguments->draws,
-                   "Draws so many directions a ray of the environment and of each lamp with --renderer cpu, "
-                   "a square number.")
+  verb->add_option(
+          "--draws", arguments->draws,
+          "Draws this many directions a ray of the environment and of each lamp with --renderer cpu, "
+          "a square number.")
       ->check(in_range(1, 1 << 20))
       ->capture_default_str();
   verb->add_option("-o,--output,--out", arguments->out,
@@ -278,12 +279,12 @@ void add_render_command(CLI::App& app) {
                    "CPU; auto takes OpenGL where it can.")
       ->check(one_of({"auto", "gl", "cpu"}))
       ->capture_default_str();
-  verb->add_option("--view", arguments->view, "Turns the view so many degrees to the right and upwards.")
+  verb->add_option("--view", arguments->view, "Turns the view this many degrees to the right and upwards.")
       ->expected(2)
       ->delimiter(',');
   verb->add_option("--size", arguments->size, "Sets the picture's pixels, N or WxH.")->capture_default_str();
   verb->add_option("--pixel-samples,--samples", arguments->samples,
-                   "Takes so many samples a pixel along each axis.")
+                   "Takes this many samples a pixel along each axis.")
       ->check(in_range(1, 8))
       ->capture_default_str();
   verb->add_option("--tone", arguments->tone, "Maps a PNG's tones: clamped, or with a filmic curve.")
@@ -295,7 +296,7 @@ void add_render_command(CLI::App& app) {
   add_illuminant(*verb, arguments->open);
   verb->add_option("--background", arguments->background, "Sets the background, grey or r,g,b, linear.")
       ->capture_default_str();
-  verb->add_flag("--exact", arguments->exact, "Weighs texels in the shader, not by the texture unit.");
+  verb->add_flag("--exact", arguments->exact, "Interpolates texels in the shader, not by the texture unit.");
   verb->add_flag("--shadows", arguments->shadows, "Lets triangles block lights with --renderer cpu.");
   add_figure_arguments(*verb, arguments->figure, arguments->figure1);
   verb->add_flag("--json", arguments->json, "Prints what was drawn as JSON, of --figure1 the table.");

@@ -92,7 +92,8 @@ void add_specular_choose(CLI::App& verb) {
     std::string max_error = "1/255", exponents = "1:1000", language = "c";
     bool json = false;
   };
-  CLI::App* sub = verb.add_subcommand("choose", "Which member to use for which exponents, and its code");
+  CLI::App* sub =
+      verb.add_subcommand("choose", "Choose the approximation for a range of exponents, and write its code");
   sub->footer("Example: burnish specular choose --max-error 1/255 --exponents 1:1000");
   auto arguments = std::make_shared<Arguments>();
   sub->add_option("--max-error", arguments->max_error, "Allows this absolute error, a number or a fraction.")
@@ -161,7 +162,7 @@ void add_specular_code(CLI::App& verb) {
   sub->add_option("--to,--lang", arguments->language, "Writes the code in this language: " + languages + ".")
       ->capture_default_str();
   sub->add_option("--exponent", arguments->exponent,
-                  "Writes constants for this exponent, which else is an argument.");
+                  "Writes constants for this exponent, which is otherwise an argument.");
   sub->add_flag("--normalize", arguments->normalize, "Keeps the energy of the power; needs --exponent.");
   add_text_output(*sub, arguments->to);
   sub->callback([arguments] {
@@ -183,7 +184,8 @@ void add_specular_eval(CLI::App& verb) {
     double exponent = 1;
     bool normalize = false, json = false;
   };
-  CLI::App* sub = verb.add_subcommand("eval", "Values for cosines from standard input, one a line");
+  CLI::App* sub =
+      verb.add_subcommand("eval", "Evaluate an approximation for cosines from standard input, one a line");
   sub->footer("Example: printf '1\\n0.9\\n' | burnish specular eval --method cubic2 --exponent 50");
   auto arguments = std::make_shared<Arguments>();
   sub->add_option("--method", arguments->method, "Takes this method of `specular list`.")->required();
@@ -221,7 +223,7 @@ void add_specular_table(CLI::App& verb) {
     TextOutput to;
     int count = 1000, fraction_bits = 8;
   };
-  CLI::App* sub = verb.add_subcommand("table", "The paper's coefficient a(e) for e = 1, 2, …");
+  CLI::App* sub = verb.add_subcommand("table", "Write the paper's coefficient a(e) for e = 1, 2, …");
   sub->footer("Example: burnish specular table --to mem --fraction-bits 8 -o quadratic_a.mem");
   auto arguments = std::make_shared<Arguments>();
   sub->add_option("--to,--format", arguments->format,
@@ -230,7 +232,7 @@ void add_specular_table(CLI::App& verb) {
       ->capture_default_str();
   sub->add_option("--last,--count", arguments->count, "Ends at this exponent.")->capture_default_str();
   sub->add_option("--fraction-bits", arguments->fraction_bits,
-                  "Gives the PROM's fixed point words so many fraction bits.")
+                  "Gives the PROM's fixed point words this many fraction bits.")
       ->capture_default_str();
   add_text_output(*sub, arguments->to);
   sub->callback([arguments] {

@@ -116,7 +116,7 @@ void add_specular_plot(CLI::App& verb) {
     std::vector<double> exponents{10};
     bool json = false;
   };
-  CLI::App* sub = verb.add_subcommand("plot", "One figure, SVG or PNG by the name's end");
+  CLI::App* sub = verb.add_subcommand("plot", "Draw one figure, SVG or PNG by the ending of the file's name");
   sub->footer(
       "2a: lobes; 2b: relative errors; 3: largest relative error above 0.56; coefficient: a(e) against a "
       "line;\n"
@@ -161,7 +161,7 @@ void add_specular_report(CLI::App& verb) {
     bool json = false;
   };
   CLI::App* sub =
-      verb.add_subcommand("report", "The paper's figures measured, every bound proved, all pictures");
+      verb.add_subcommand("report", "Measure the paper's figures, prove every bound, draw all pictures");
   sub->footer("Example: burnish specular report --exponent 20 -o out/specular");
   auto arguments = std::make_shared<Arguments>();
   sub->add_option("--exponent", arguments->exponent, "Reports errors, energies and spheres of this exponent.")

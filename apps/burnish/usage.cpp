@@ -100,7 +100,8 @@ void check_folder(const std::filesystem::path& folder) {
   std::filesystem::path there = std::filesystem::absolute(folder, none);
   while (!std::filesystem::exists(there, none) && there.has_relative_path()) there = there.parent_path();
   if (!std::filesystem::is_directory(there, none))
-    throw Error::in_file(folder.string(), "a folder", fmt::format("'{}', which is none", there.string()));
+    throw Error::in_file(folder.string(), "a folder",
+                         fmt::format("'{}', which is no folder", there.string()));
   if (::access(there.c_str(), W_OK | X_OK) != 0)
     throw Error::in_file(folder.string(), "a folder that can be written",
                          std::generic_category().message(errno));
@@ -158,8 +159,9 @@ std::string list_of_verbs(const CLI::App& app) {
   for (const std::string& name : verbs_of(app, false))
     text += fmt::format("  {:<13}{}\n", name, app.get_subcommand(name)->get_description());
   return text +
-         "\n`burnish VERB --help` has its options and an example; `burnish help formats` says what is "
-         "read.\n";
+         "\n"
+         "`burnish VERB --help` shows its options and an example; `burnish help formats` lists the files "
+         "that are read.\n";
 }
 
 std::optional<std::string> misspelling(const CLI::App& app, std::span<char* const> arguments) {

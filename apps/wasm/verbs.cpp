@@ -71,14 +71,15 @@ const Source& material(const Json& arguments, const char* key = "id") {
 
 const SurfaceModel& surface_of(const Json& arguments) {
   const Opened& found = opened(arguments);
-  if (!found.surface) throw Error(fmt::format("{}: expected a surface, found another", found.source.name));
+  if (!found.surface)
+    throw Error(fmt::format("{}: expected a surface, found another material", found.source.name));
   return *found.surface;
 }
 
 const FactoredBrdf& model_of(const Json& arguments) {
   const Source& source = material(arguments);
   const auto* model = std::get_if<FactoredBrdf>(&source.brdf);
-  if (!model) throw Error(fmt::format("{}: expected a factored BRDF, found another", source.name));
+  if (!model) throw Error(fmt::format("{}: expected a factored BRDF, found another material", source.name));
   return *model;
 }
 
@@ -171,7 +172,8 @@ Reply evaluate(const Request& request) {
   const BrdfRef brdf = source.ref();
   const double side = source.findings.transmits() ? -1 : 1;  // wo of a transmission lies below the surface
   const std::vector<float> directions = floats_of(request.bytes);
-  if (directions.size() % 6 != 0) throw Error("evaluate: expected as many wi as wo, three numbers each");
+  if (directions.size() % 6 != 0)
+    throw Error("evaluate: expected as many wi as wo, three numbers each, found another count");
   const std::size_t n = directions.size() / 6, channels = static_cast<std::size_t>(brdf.channels());
   constexpr std::size_t kChunk = 4096;
   std::vector<float> result;
@@ -491,7 +493,7 @@ Reply place(const Request& request) {
   given.read("u", u);
   given.read("v", v);
   given.read("lod", lod);
-  if (!std::isfinite(u + v + lod)) throw Error("place: expected numbers u, v and lod");
+  if (!std::isfinite(u + v + lod)) throw Error("place: expected finite numbers u, v and lod, found others");
   const SpatialBrdf& surface = surface_of(a).brdf;
   return {.json = "{}",
           .blobs = {format_compact({.brdf = surface.at(u, v, lod), .lambda_nm = {}, .notes = "{}"},

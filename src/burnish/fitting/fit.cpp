@@ -66,9 +66,9 @@ struct FormFitter {
 
   FittedModel operator()(const BaselineMethod& form) const {
     if (options.format || options.smooth || options.conserve_energy)
-      throw Error(fmt::format(
-          "fit: expected neither a format nor a smoothness nor energy conservation with method {}",
-          form.method));
+      throw Error(
+          fmt::format("fit: expected no format, smoothness or energy conservation with method {}, found one",
+                      form.method));
     if (form.bytes == std::uint64_t{0}) throw Error("fit: expected at least one byte for a method, found 0");
     const SampleSource samples = source.sample_source(kBaselineSamples, false);
     BaselineOptions how{.seed = options.seed, .progress = stages.of(form.method)};
@@ -85,7 +85,8 @@ struct FormFitter {
 
   FittedModel operator()(const FromBook& form) const {
     if (options.smooth || source.nodes())
-      throw Error("fit: expected neither a smoothness nor nodes as the target with a book");
+      throw Error(
+          "fit: expected no smoothness and function as the target with a book, found a smoothness or nodes");
     const TableFormat format = source.format();
     const Samples* const samples = source.samples();
     Completion completion =

@@ -30,7 +30,7 @@ void check(const Budget& budget) {
   if (budget.lobes.value_or(1) < 1)
     throw Error(fmt::format("fit: expected at least one lobe, found {}", *budget.lobes));
   if (budget.fetches && (budget.lobes || budget.search))
-    throw Error("fit: expected with fetches neither a number of lobes nor a search");
+    throw Error("fit: expected no number of lobes and no search with fetches, found one");
 }
 
 FittedModel model_of(FittedLobe fitted) {

@@ -589,15 +589,15 @@ TEST(Fit, RefusesWhatDoesNotGoTogether) {
   // Sources that were not measured have no nodes, and a function has none to hold out.
   EXPECT_THAT(told(even, {.target = FitTarget::nodes}), HasSubstr("expected a measurement"));
   EXPECT_THAT(told(even, {.target = FitTarget::function, .hold_out = NodePart{}}),
-              HasSubstr("expected the nodes"));
+              HasSubstr("expected nodes as the target"));
   // These budgets hold no model.
   EXPECT_THAT(told(even, {.form = Budget{.bytes = 0}}), HasSubstr("budget"));
   EXPECT_THAT(told(even, {.form = Budget{.bytes = 20}}), HasSubstr("budget"));
   EXPECT_THAT(told(uneven, {.form = Budget{.lobes = 1}}), HasSubstr("two lobes"));
   EXPECT_THAT(told(even, {.form = Budget{.fetches = 0}}), HasSubstr("at least one fetch, found 0"));
   EXPECT_THAT(told(even, {.form = Budget{.lobes = 0}}), HasSubstr("at least one lobe, found 0"));
-  EXPECT_THAT(told(even, {.form = Budget{.fetches = 2, .lobes = 2}}), HasSubstr("neither a number of lobes"));
-  EXPECT_THAT(told(even, {.form = Budget{.fetches = 2, .search = true}}), HasSubstr("nor a search"));
+  EXPECT_THAT(told(even, {.form = Budget{.fetches = 2, .lobes = 2}}), HasSubstr("no number of lobes"));
+  EXPECT_THAT(told(even, {.form = Budget{.fetches = 2, .search = true}}), HasSubstr("and no search"));
   EXPECT_THAT(told(even, {.form = BaselineMethod{"svd", 0}}), HasSubstr("at least one byte"));
   EXPECT_THAT(told(even, {.samples = 0}), HasSubstr("at least one sample"));
   // These formats do not hold the channels.

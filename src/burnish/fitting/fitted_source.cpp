@@ -57,7 +57,7 @@ FittedSource::FittedSource(const Source& source, const FitOptions& options, cons
   if (options.target.value_or(default_target(source, options)) == FitTarget::nodes)
     take_nodes(stages);
   else if (options.hold_out)
-    throw Error("fit: expected the nodes as the target, since some are to be held out");
+    throw Error("fit: expected nodes as the target with nodes held out, found function");
 }
 
 BrdfRef FittedSource::reference() const {

@@ -113,7 +113,7 @@ SampleFile parse_astm(const FileBytes& file, const OpenOptions& options) {
     const auto theta_s = std::find(names.begin(), names.end(), kAngles[2]);
     if (theta_s == names.end()) reader.fail("theta_s in the VARS line", in_quotes(vars_line));
     names.insert(theta_s + 1, std::string(kAngles[3]));
-    findings.conventions.push_back("The VARS line forgets phi_s; the rows have it, after theta_s.");
+    findings.conventions.push_back("The VARS line leaves out phi_s; the rows have it after theta_s.");
   }
 
   const AstmColumns columns = sort_columns(reader, names, vars_line);

@@ -33,7 +33,7 @@ TEST(Astm, AcceptsAForgottenPhiSWhereTheRowsSettleIt) {
   const SampleFile file = parse_astm(memory_file("VARS theta_i,phi_i,theta_s,BRDF\n0.1 0.2 0.3 0.4 7\n"), {});
   EXPECT_NEAR(length(file.samples.pairs[0].wo - spherical_direction(0.3, 0.4)), 0, 1e-15);
   EXPECT_EQ(file.samples.values, std::vector<double>{7});
-  EXPECT_THAT(file.findings.conventions, Contains(HasSubstr("forgets phi_s")));
+  EXPECT_THAT(file.findings.conventions, Contains(HasSubstr("leaves out phi_s")));
   EXPECT_THAT(
       error_of([] { parse_astm(memory_file("VARS theta_i,phi_i,theta_s,BRDF\n0.1 0.2 0.3 0.4\n"), {}); }),
       HasSubstr("phi_s in the VARS line"));

@@ -190,13 +190,13 @@ class Converter {
   /// Notes the asymmetry that a format averages because it holds one order of the two directions.
   void lose_asymmetry(BrdfRef brdf) {
     if (const double error = reciprocity_error(brdf, kMirrorPairs, 1).mean; error > kReciprocal)
-      lose("directions exchanged averaged (asymmetry {:.3g} %)", 100 * error);
+      lose("values of exchanged directions were averaged (asymmetry {:.3g} %)", 100 * error);
   }
 
   void lose_sides(BrdfRef brdf) {
     if (const auto error = relative_difference(brdf, OtherSide{brdf}, kMirrorPairs).value_or(0);
         error > kReciprocal)
-      lose("the sides of the plane of incidence averaged (difference {:.3g} %)", 100 * error);
+      lose("both sides of the plane of incidence were averaged (difference {:.3g} %)", 100 * error);
   }
 
   void lose_unknown(const AngleTable& made) {
@@ -320,7 +320,7 @@ class Converter {
       const bool told_apart = std::ranges::any_of(source_.findings.warnings, [](const std::string& warning) {
         return warning.find("TIS says") != std::string::npos;
       });
-      note("{}", told_apart ? "TIS changed: it says what the values integrate to"
+      note("{}", told_apart ? "TIS changed: it states the integral of the values"
                             : "TIS was computed anew from the values");
       return kept(format_zemax(*table, sample, source_.findings.comments, part()));
     }
@@ -374,13 +374,13 @@ class Converter {
       lose("the table's grid: {} entries became scattered samples", made->size());
     } else if (!samples) {
       made = measure(isotropic(), {options_.count, 0, options_.seed});
-      lose("what lies between {} samples drawn at random directions", made->size());
+      lose("the values between {} samples drawn at random directions", made->size());
     }
     if (made) samples = &*made;
     std::vector<double> lambda_nm = source_.findings.lambda_nm;
     if (lambda_nm.empty() && samples->channels == 1) {
       lambda_nm = {kGrey_nm};
-      note("grey stands at {} nm", kGrey_nm);
+      note("grey values are stored at {} nm", kGrey_nm);
     } else if (lambda_nm.empty()) {
       lambda_nm.assign(kColourNodes_nm.begin(), kColourNodes_nm.end());
       Samples spectra{
@@ -420,7 +420,7 @@ class Converter {
       lose("the table's grid: {} entries became scattered samples", made->size());
     } else if (!samples) {
       made = measure(brdf_, {options_.count, 0, options_.seed});
-      lose("what lies between {} samples drawn at random directions", made->size());
+      lose("the values between {} samples drawn at random directions", made->size());
     }
     if (made) samples = &*made;
     if (const auto above = above_horizon(*samples); above.size() < samples->size()) {
@@ -429,7 +429,7 @@ class Converter {
       samples = &*made;
     }
     if (astm && !samples->isotropic && same_incident_azimuth(*samples))
-      lose("one phi_i: a reader takes the samples for isotropic");
+      lose("the anisotropy: all samples have one phi_i, so readers take them as isotropic");
     const auto& lambda = source_.findings.lambda_nm;
     return kept(astm ? samples_astm(*samples, lambda) : samples_csv(*samples, lambda));
   }
@@ -533,10 +533,9 @@ Losses left_behind(const Source& source, const Format& format) {
   Losses losses;
   if (!found.left_out.empty()) losses.push_back(fmt::format("{}", fmt::join(found.left_out, ", ")));
   if (found.transmits() && !format.keeps_transmission)
-    losses.push_back(
-        "that it is transmission: the format has reflection alone, wo is mirrored through the surface");
+    losses.push_back("transmission: the format has reflection alone, so wo is mirrored through the surface");
   if (found.block && is_back(found.block->part) && !format.keeps_block)
-    losses.push_back("the side: it is the back's");
+    losses.push_back("the side: the values are those of the back");
   if (found.block && !found.block->band.empty() && !same_name(found.block->band, "Visible") &&
       found.block->band != kColourBand && !format.keeps_block)
     losses.push_back(fmt::format("the band {}", found.block->band));

@@ -279,14 +279,14 @@ TEST(Convert, SaysThatASideABandOrTransmissionIsLost) {
                                      {.part = BsdfPart::transmission_back});
   for (const char* format : {"mbsdf", "zemax"}) {
     const Converted converted = convert(source, format, {.cells = 6});
-    EXPECT_THAT(converted.losses, Contains(HasSubstr("the back's"))) << format;
+    EXPECT_THAT(converted.losses, Contains(HasSubstr("those of the back"))) << format;
     EXPECT_THAT(converted.losses, Contains("the band Solar")) << format;
-    EXPECT_THAT(converted.losses, Not(Contains(HasSubstr("that it is transmission")))) << format;
+    EXPECT_THAT(converted.losses, Not(Contains(HasSubstr("transmission: the format")))) << format;
     EXPECT_EQ(parse_source(memory_file(converted.bytes), {}).findings.block,
               (BsdfBlock{BsdfPart::transmission_front, ""}))
         << format;
   }
-  EXPECT_THAT(convert(source, "merl", {.cells = 6}).losses, Contains(HasSubstr("that it is transmission")));
+  EXPECT_THAT(convert(source, "merl", {.cells = 6}).losses, Contains(HasSubstr("transmission: the format")));
 }
 
 TEST(Convert, SaysWhichPartASourceOfOnePartIs) {
@@ -337,7 +337,7 @@ Source lopsided_table(bool side) {
 
 TEST(Convert, SaysWhatIsAveraged) {
   EXPECT_THAT(convert(lopsided_table(false), "merl", kSmall).losses,
-              Contains(HasSubstr("directions exchanged averaged")));
+              Contains(HasSubstr("exchanged directions were averaged")));
   for (const char* format : {"mbsdf", "zemax"}) {
     EXPECT_THAT(convert(lopsided_table(true), format, kSmall).losses,
                 Contains(HasSubstr("sides of the plane of incidence")));

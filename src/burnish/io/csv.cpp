@@ -264,7 +264,7 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
   const Preamble preamble = read_preamble(reader);
   if (!preamble.header) reader.fail("a header line", "none");
   if (is_texel_header(*preamble.header))
-    reader.fail("samples of one material", "those of texels, which fit-surface reads");
+    reader.fail("samples of one material", "samples of texels, which fit-surface reads");
   const CsvColumns columns = read_columns(reader, *preamble.header, true);
   const auto asked = asked_kind(options);
   const ValueKind kind = asked               ? *asked
@@ -293,7 +293,8 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
     const std::size_t before = samples.values.size();
     for (const std::size_t at : columns.values) {
       const double value = f_of_value(kind, rows.number(at), pair);
-      if (std::isinf(value)) reader.fail("a finite value over its cosine", in_quotes(reader.line()));
+      if (std::isinf(value))
+        reader.fail("a value that is finite after division by its cosine", in_quotes(reader.line()));
       samples.values.push_back(value);
     }
     if (std::isnan(samples.values[before])) {
@@ -327,7 +328,7 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
   if (columns.in_plane)
     findings.conventions.push_back(settle_plane(samples));
   else if (one_azimuth)
-    findings.conventions.push_back("phi_i is 0 everywhere: the file has none.");
+    findings.conventions.push_back("The file has no phi_i: it is taken as 0.");
   findings.conventions.push_back(
       tag == Tag::none ? (one_azimuth            ? "Taken as isotropic: the file has no phi_i."
                           : one_incident_azimuth ? "Taken as isotropic: every sample has the same phi_i."

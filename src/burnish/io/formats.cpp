@@ -100,7 +100,7 @@ Source refuse_surface(const FileBytes& file, const OpenOptions&) {
 }
 
 Source refuse_np(const FileBytes& file, const OpenOptions&) {
-  throw Error::in_file(file.name, "np:FILE#NAME for one of its codes, a decoder.f32 beside it",
+  throw Error::in_file(file.name, "np:FILE#NAME for one of its codes, with decoder.f32 in the same folder",
                        "the file alone");
 }
 
@@ -180,7 +180,7 @@ constexpr Format kFormats[] = {
     {.title = "tensor tree",
      .to = "tensortree",
      .endings = ".xml",
-     .holds = "cubes of Shirley-Chiu squares, grey (rank 3: of rank 3 alone)",
+     .holds = "cubes of Shirley-Chiu squares, grey (rank 3 only from rank 3)",
      .looks_like = seen<looks_like_tensor_tree>,
      .parse = read_tensor_tree,
      .write = write_tensor_tree,

@@ -142,7 +142,7 @@ FourierHeader read_fourier_header(ByteReader& reader) {
     reader.fail("1 basis, no textures", fmt::format("{}", bases));
   header.remark_bytes = number("the length of remarks");
   if (const auto parameters =
-          std::uint64_t{number("the number of textures")} + number("that of their values");
+          std::uint64_t{number("the number of textures")} + number("the number of texture values");
       parameters != 0)
     reader.fail("no textures", "some");
   header.eta = reader.number<float>("the index of refraction");
@@ -235,7 +235,8 @@ FourierFile parse_fourier(const FileBytes& file) {
   count_series(*table, findings);
   if (findings.sample_count == 0) reader.fail("a reflection of the upper side", "none");
   findings.conventions = {
-      "A series has the azimuth between the propagating light and the viewer: the mirror direction is at 0.",
+      "Azimuths are between the direction that the light travels in and the viewer: the mirror direction is "
+      "at 0.",
       "Values have the cosine of the light's angle, which is divided out; between cosines they are splines.",
       header.channels == 3 ? "Luminance, red and blue, taken as linear Rec. 709." : "Grey."};
   findings.theta_i_max = findings.theta_o_max = kHalfPi;

@@ -35,7 +35,7 @@ Illuminant open_illuminant(const std::string& spec) {
     return standard_illuminant(spec);
   if (std::error_code none; !std::filesystem::exists(spec, none))
     throw Error(fmt::format(
-        "expected E, D50, D65, A or a file of wavelengths and powers, found '{}', which is none{}", spec,
+        "expected E, D50, D65, A or a file of wavelengths and powers, found '{}', which is neither{}", spec,
         did_you_mean(spec, kStandard)));
   return parse_illuminant(read_file(spec, 1 << 24));
 }

@@ -35,7 +35,7 @@ Json parse_document(const FileBytes& file) {
   } catch (const Json::parse_error& error) {
     throw Error(file.name, error.byte, "well-formed JSON", "something else");
   } catch (const Json::exception&) {
-    throw Error::in_file(file.name, "well-formed JSON", "a number beyond all bounds");
+    throw Error::in_file(file.name, "well-formed JSON", "a number that is too large");
   }
 }
 
@@ -120,14 +120,14 @@ SpectrumTable collect(const FileBytes& file, const Json& rows, std::span<const d
     if (is_new) {
       // A table with almost as many spectra as rows would be mostly holes.
       if ((table.angles.size() + 1) * bands > 64 * rows.size() + 64 * bands)
-        throw Error::in_file(file.name, "the same directions at every wavelength", "others at each");
+        throw Error::in_file(file.name, "the same directions at every wavelength", "different ones at each");
       table.angles.push_back(place->first);
       table.values.resize(table.values.size() + bands, std::numeric_limits<double>::quiet_NaN());
     }
     double& at = table.values[place->second * bands + band];
     if (!std::isnan(at))
       throw Error::in_file(file.name, "one value for each direction and wavelength",
-                           fmt::format("another in row {}", number));
+                           fmt::format("a second one in row {}", number));
     at = value;
   }
   return table;

@@ -217,7 +217,7 @@ RglFile parse_rgl(const FileBytes& file, const OpenOptions& options) {
   if (!data.jacobian) findings.conventions.push_back("stored values are not scaled by 4 sigma / ndf");
   if (turned)
     findings.conventions.push_back(
-        "the bits of valid nodes stand the other way round than in other files: turned");
+        "the bits of valid nodes are in the reverse order of other files: reversed");
   if (findings.hole_count > 0)
     findings.conventions.push_back("nodes that were not measured keep the values the file fills in");
 

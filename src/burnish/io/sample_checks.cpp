@@ -105,7 +105,7 @@ std::string settle_isotropy(Samples& samples) {
   }
   samples.isotropic = errors.isotropic <= errors.anisotropic;
   return fmt::format(
-      "Taken as {}: ln f of samples is predicted by the others to {:.3f} if isotropic, to {:.3f} if "
+      "Taken as {}: the other samples predict ln f of a sample to {:.3f} if isotropic, to {:.3f} if "
       "anisotropic.",
       samples.isotropic ? "isotropic" : "anisotropic", errors.isotropic, errors.anisotropic);
 }

@@ -101,14 +101,14 @@ std::vector<std::string> coverage_gaps(const Samples& samples) {
   std::vector<std::string> gaps;
   if (is_one(&DirectionPair::wo))
     gaps.push_back(
-        fmt::format("One angle of view only, theta_o = {} degrees: what stands elsewhere is extrapolated.",
+        fmt::format("One angle of view only, theta_o = {} degrees: all other values are extrapolated.",
                     theta(&DirectionPair::wo)));
   if (is_one(&DirectionPair::wi))
-    gaps.push_back(fmt::format(
-        "One angle of incidence only, theta_i = {} degrees: what stands elsewhere is extrapolated.",
-        theta(&DirectionPair::wi)));
+    gaps.push_back(
+        fmt::format("One angle of incidence only, theta_i = {} degrees: all other values are extrapolated.",
+                    theta(&DirectionPair::wi)));
   if (in_plane && gaps.empty())
-    gaps.push_back("In the plane of incidence only: what stands beside it is extrapolated.");
+    gaps.push_back("In the plane of incidence only: all other values are extrapolated.");
   return gaps;
 }
 

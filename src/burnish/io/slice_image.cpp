@@ -17,7 +17,7 @@ namespace burnish {
 
 std::string format_slice_image(const HalfDiffTable& table) {
   if (table.channel_count != 1 && table.channel_count != 3)
-    throw Error("slices are drawn of grey or RGB tables, not of " + std::to_string(table.channel_count) +
+    throw Error("slices: expected a grey or RGB table, found " + std::to_string(table.channel_count) +
                 " channels");
 
   // Slices of phi_d stand in rows, as square as can be. Holes stay transparent.

@@ -27,7 +27,7 @@ std::optional<std::string> energy_warning(const Source& source, const std::vecto
     if (const double albedo = std::ranges::max(at.albedo.albedo); albedo > most)
       most = albedo, theta = at.theta_i;
   if (most <= kMostReflected) return std::nullopt;
-  return fmt::format("More is {} than received: {:.0f} % at theta_i = {:.0f} degrees.{}",
+  return fmt::format("More light is {} than received: {:.0f} % at theta_i = {:.0f} degrees.{}",
                      source.findings.transmits() ? "transmitted" : "reflected", 100 * most, degrees(theta),
                      source.samples() ? " Reflectance factors? --brf divides them by pi." : "");
 }

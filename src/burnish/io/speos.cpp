@@ -141,8 +141,8 @@ Content read_preamble(TextReader& reader, const std::string& file, const OpenOpt
   skip_line(reader);
   if (anisotropic)
     for (int k = 0; k < 3; ++k) next_number(reader, "the anisotropy vector");
-  const double reflection = next_number(reader, "whether there is reflection");
-  const double transmission = next_number(reader, "whether there is transmission");
+  const double reflection = next_number(reader, "the flag of reflection");
+  const double transmission = next_number(reader, "the flag of transmission");
   for (const double given : {reflection, transmission})
     if ((given != 0 && given != 1) || reflection + transmission == 0)
       reader.fail("reflection and transmission, 1 0, 0 1 or 1 1",
@@ -195,7 +195,7 @@ void scale(Block& block, double factor, const TextReader& reader) {
   for (double& value : block.values) {
     value *= factor;
     if (!(std::abs(value) < kMaxValue))
-      reader.fail(fmt::format("reflectances that values below {:g} have", kMaxValue),
+      reader.fail(fmt::format("reflectances that keep values below {:g}", kMaxValue),
                   fmt::format("{}", value));
   }
 }
@@ -267,7 +267,7 @@ void take_spectrum(const TextReader& reader, PartHead head, std::vector<std::vec
   if (!(*least >= 0 && found > 0)) reader.fail("a positive reflectance", fmt::format("{}", found));
   const bool flat = *least == *most, kept = flat && trusted(*least, found);
   content.scaling = fmt::format(
-      "The values integrate to {:.4g} % at {} degrees, stated {:.4g} to {:.4g} %: {}.", 100 * found,
+      "The values integrate to {:.4g} % at {} degrees, the file states {:.4g} to {:.4g} %: {}.", 100 * found,
       head.measured_deg, 100 * *least, 100 * *most, kept ? "taken as they are" : "scaled");
   if (flat) {
     shares = {kept ? found : *least};
@@ -505,7 +505,7 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
     content.rotations_deg.resize(1);
   } else if (content.rotations_deg.size() > 1) {
     findings.conventions.push_back(
-        "Anisotropy angles are those from where the light travels to to the tangent.");
+        "Anisotropy angles go from the direction that the light travels in to the tangent.");
   }
   AngleTable& table = result.table;
   CountedTable made = make_table(file, content);

@@ -178,7 +178,7 @@ TEST(Speos, SaysWhatIsWrong) {
   EXPECT_THAT(error(seeds::kSpeos, "0.4\t0.5", "0.4\tx"), HasSubstr("a finite number for a value"));
   EXPECT_THAT(error(seeds::kSpeos, "60\t0.4", "91\t0.4"), HasSubstr("theta in [0, 90]"));
   EXPECT_THAT(error(seeds::kSpeos, "450\t20", "450\t1e80"),
-              HasSubstr("reflectances that values below 1e+30 have"));
+              HasSubstr("reflectances that keep values below 1e+30"));
 }
 
 // In this file, blocks begin with a line of two counts, values contain the cosine, and phi = 0 is the mirror direction.

@@ -116,7 +116,8 @@ bool fits_utia(const AngleTable& table) noexcept {
 }
 
 std::string format_utia(const AngleTable& table) {
-  if (!fits_utia(table)) throw Error("UTIA: expected RGB values at the nodes of its table, found others");
+  if (!fits_utia(table))
+    throw Error("UTIA: expected RGB values at the nodes of its table, found another table");
   std::string bytes(kBytes, '\0');
   for (std::size_t entry = 0; entry < kPlane; ++entry)
     for (std::size_t c = 0; c < kPlanes; ++c) {

@@ -154,7 +154,7 @@ ChosenBlock WindowXml::choose(const OpenOptions& options, Findings& findings) co
         found.push_back({{*part, band}, {node}});
     }
   if (found.empty())
-    fail("a WavelengthDataBlock 'Reflection Front' or of another part", present.empty() ? "none" : present);
+    fail("a WavelengthDataBlock with 'Reflection Front' or another part", present.empty() ? "none" : present);
   add_colours(found);
 
   std::vector<BsdfBlock> blocks;

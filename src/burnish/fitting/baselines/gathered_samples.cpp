@@ -24,7 +24,7 @@ GatheredSamples gather_samples(const SampleSource& source, std::size_t most) {
     result.weights.push_back(weight);
     for (const double value : values) result.values.push_back(std::max(0.0, value));
   }
-  if (result.pairs.empty()) throw Error("expected a sample with weight, found none");
+  if (result.pairs.empty()) throw Error("expected a sample with a weight above 0, found none");
   return result;
 }
 

@@ -115,7 +115,7 @@ PairGrid sample_pair_grid(BrdfRef source, std::span<const NodeAxis> rows, std::s
   // where it is unknown, what the neighbours know
   for (std::size_t node = 0; node < nodes; ++node) grid.measured[node] = grid.measured[node] && known[node];
   if (std::find(known.begin(), known.end(), 1) == known.end())
-    throw Error("decomposition: expected a source that is known somewhere, found one that is not");
+    throw Error("decomposition: expected a source with known values, found none");
   spread(grid, known);
   return grid;
 }

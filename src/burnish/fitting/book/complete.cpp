@@ -379,7 +379,7 @@ std::vector<double> logs_at_nodes(const MaterialBook& book, const std::vector<Pl
 }
 
 void check_completed(const MaterialBook& book, const Samples& samples) {
-  if (book.materials().empty()) throw Error("book: expected materials in it, found none");
+  if (book.materials().empty()) throw Error("book: expected a book with materials, found none in it");
   if (!samples.isotropic || !book_takes(samples.channels))
     throw Error(
         fmt::format("book: expected pairs of an isotropic material in one channel or three, found {} in {}",

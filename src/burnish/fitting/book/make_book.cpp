@@ -245,7 +245,7 @@ void check_materials(const std::vector<BookMaterial>& materials, std::size_t nod
 std::array<int, 3> book_sides(const BookOptions& options) {
   for (auto sides = kSides.rbegin(); sides != kSides.rend(); ++sides)
     if (bytes_of(*sides, options.bytes_a_material) <= options.bytes) return *sides;
-  throw Error(fmt::format("book: expected at least {} bytes to share for {} a material, found {}",
+  throw Error(fmt::format("book: expected at least {} shared bytes with {} bytes a material, found {}",
                           bytes_of(kSides.front(), options.bytes_a_material), options.bytes_a_material,
                           options.bytes));
 }

@@ -35,7 +35,7 @@ const FactorUse& use_of(const ModelSpec& spec, std::size_t table) {
   for (const std::vector<FactorUse>& lobe : spec.lobes)
     for (const FactorUse& use : lobe)
       if (use.table == table) return use;
-  throw Error("fit: expected a use of every table");
+  throw Error("fit: expected a factor that uses every table, found a table without one");
 }
 
 }  // namespace

@@ -212,7 +212,7 @@ ModelSpec plan_to_spec(const LobePlan& plan, std::size_t bytes, std::size_t chan
                        std::size_t texel_bytes) {
   const auto lobes = static_cast<std::size_t>(plan.lobes);
   if (lobes > 1 && std::ranges::all_of(plan.factors, &PlannedFactor::every_lobe))
-    throw Error("fit: expected a factor that each lobe has its own table of");
+    throw Error("fit: expected a factor with a table for each lobe, found none");
   Unsized model;
   if (!plan.wide.empty()) add_lobes(plan.wide, 1, false, model);
   const std::size_t wide_tables = model.factors.size();

@@ -31,7 +31,8 @@ class State {
       : problem_(problem), least_diagonal_(least_diagonal), x_(std::move(start)), values_(problem.functions) {
     problem_.evaluate(x_, values_, {});
     cost_ = half_square(values_);
-    if (!std::isfinite(cost_)) throw Error("least squares: the start has values that are not finite");
+    if (!std::isfinite(cost_))
+      throw Error("least squares: expected finite values at the start, found others");
   }
 
   const std::vector<double>& x() const { return x_; }

@@ -199,7 +199,7 @@ class LogOperator {
     }
     // total_weight_ is the sum of weights, mean over the channels: it normalizes the operator.
     for (const double w : weights) total_weight_ += w / static_cast<double>(channels_);
-    if (!(total_weight_ > 0)) throw Error("fit: expected samples with weight, found none");
+    if (!(total_weight_ > 0)) throw Error("fit: expected samples with a weight above 0, found none");
     mean_.assign(step(), 0);
     double spread = 0;
     for (std::size_t c = 0; c < channels_; ++c) {
@@ -377,7 +377,8 @@ LogSolution solve(const RowMaker& rows, const HomomorphicOptions& options) {
       [&](const Doubles& v) { return op.apply(v); }, [&](const Doubles& r) { return op.precondition(r); },
       inner_product, after_step);
   if (!std::isfinite(found.residual))
-    throw Error("fit: expected a solvable system; more smoothness may help");
+    throw Error(
+        "fit: expected a system of equations that can be solved, found none; more smoothness may help");
   solution.summary.iterations = found.iterations;
   if (found.iterations < options.max_iterations) solution.summary.stop_reason = StopReason::tolerance_reached;
   solution.summary.error_after = op.error(x);

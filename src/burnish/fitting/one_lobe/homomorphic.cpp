@@ -57,7 +57,7 @@ void check_formats(const ModelSpec& spec, std::size_t channels, TableFormat form
 HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec,
                                const HomomorphicOptions& options) {
   if (spec.lobes.size() != 1 || spec.lobes.front().empty())
-    throw Error("fit: a log-linear fit takes a model of one lobe");
+    throw Error("fit: expected a model of one lobe for a log-linear fit, found another");
   if (source.count == 0) throw Error("fit: expected samples, found none");
   const auto is_floor = [](double floor) { return floor > 0 && floor <= kMaxFloor; };
   if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || !is_floor(options.floor) ||

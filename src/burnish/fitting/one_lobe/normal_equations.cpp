@@ -186,7 +186,7 @@ struct Solved {
 };
 
 Solved solve(const Sums& sum, const ModelSpec& spec, const Gatherer& gatherer, double smooth) {
-  if (!(sum.weight > 0)) throw Error("fit: expected samples with weight, found none");
+  if (!(sum.weight > 0)) throw Error("fit: expected samples with a weight above 0, found none");
 
   // The matrix is the mean over the samples, plus the smoothness and a ridge.
   Matrix data = (sum.upper + sum.upper.transpose()) / sum.weight;

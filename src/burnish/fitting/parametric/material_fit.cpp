@@ -112,7 +112,7 @@ MaterialFit fit_material(const Source& source, std::string_view target, const Ma
     throw Error(fmt::format("material: expected {}, found '{}'{}", fmt::join(kTargets, " or "), target,
                             did_you_mean(target, kTargets)));
   if (options.simple && target != "openpbr")
-    throw Error(fmt::format("material: expected openpbr as a simple one, found {}", target));
+    throw Error(fmt::format("material: expected openpbr with simple, found {}", target));
   if (source.ref().channels() != 1 && source.ref().channels() != 3)
     throw Error(fmt::format("{}: expected 1 or 3 channels for {}, found {}", source.name, target,
                             source.ref().channels()));

@@ -212,7 +212,7 @@ TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
   if (options.spread_phi_h && source.isotropic())
     for (DirectionPair& pair : set.pairs) pair = turned(pair, kTwoPi * points.next()[4]);
   fill_values(source, set);
-  if (set.size() == 0) throw Error("fit: expected a source that knows some directions, found none");
+  if (set.size() == 0) throw Error("fit: expected a source with known values, found none");
   set.exposure = exposure_of(set, unlit);
   return set;
 }
