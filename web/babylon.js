@@ -3,10 +3,10 @@ export const model = MODEL;
 
 const kMaxLights = 32;
 
-// A ShaderMaterial under the directional and point lights of its scene, kMaxLights of them: diffuse * intensity is what
-// arrives of a directional light, and of a point light at distance 1. BABYLON: the module of Babylon.js. Meshes need
-// tangents; others get one around the vertical axis. `linear` is for render targets and post-processes that encode:
-// without it the material does, as sRGB.
+// Returns a ShaderMaterial for the directional and point lights of its scene, at most kMaxLights. diffuse * intensity
+// is the irradiance of a directional light, and of a point light at distance 1. BABYLON: the module of Babylon.js.
+// Meshes need tangents; others get one around the vertical axis. With `linear` the material writes linear colours, for render
+// targets and post-processes that encode them. Without it the material encodes them as sRGB.
 export function createMaterial(BABYLON, scene, {linear = false} = {}) {
   const material = new BABYLON.ShaderMaterial(model.name, scene, {
     vertexSource: `
@@ -25,7 +25,7 @@ void main() {
 }`,
     fragmentSource: `
 ${model.shader}
-uniform vec4 eye;  // a place, or where w is 0 the way to it
+uniform vec4 eye;  // the position of the viewer, or where w is 0 the direction to the viewer
 uniform vec4 lightAt[${kMaxLights}];
 uniform vec3 lightColor[${kMaxLights}];
 uniform int lightCount;
@@ -63,7 +63,7 @@ void main() {
     material.setTexture(texture.name, map);
   }
 
-  // lights and camera, whenever something is drawn
+  // Sets lights and camera before each draw.
   material.onBindObservable.add(() => {
     const effect = material.getEffect(), camera = scene.activeCamera;
     const orthographic = camera.mode === BABYLON.Camera.ORTHOGRAPHIC_CAMERA;

@@ -1,6 +1,7 @@
-/** Linear Rec. 709 or grey, 1/sr, without the cosine; directions are unit vectors, z the normal, x the tangent. */
+/** Values are linear Rec. 709 or grey, in 1/sr, without the cosine. Directions are unit vectors, z the normal, x the
+ * tangent. */
 
-/** Told what is done, one stage after the other, and a rising share of it in [0, 1]. */
+/** Receives the stages of the work, one after the other, and the share of each that is done, rising in [0, 1]. */
 export type Progress = (fraction: number, stage: string) => void;
 
 export interface Call {
@@ -9,46 +10,48 @@ export interface Call {
 }
 
 export interface ExportCall extends Call {
-  /** What the format says less than the material, a phrase each; not called where that is nothing. */
+  /** Receives what the format cannot keep of the material, one phrase for each loss. Not called without losses. */
   onLosses?: (losses: string[]) => void;
 }
 
-/** Of what tells how far it is. */
+/** Options of a call that reports its progress. */
 export interface LongCall extends Call {
   onProgress?: Progress;
 }
 
 export interface OpenOptions extends LongCall {
-  /** What errors and reports call it; by default the File's own. */
+  /** The name in errors and reports; by default that of the File. */
   name?: string;
-  /** One channel a wavelength. */
+  /** Keeps one channel for each wavelength. */
   spectral?: boolean;
   /** The light under which spectra become RGB; by default E. */
   illuminant?: "E" | "D50" | "D65" | "A";
   /** CSV values are f_r cos(theta_i), which is divided out. */
   hasCosine?: boolean;
+  /** CSV values are f_r cos(theta_o), which is divided out. */
   hasCosineO?: boolean;
+  /** CSV values are reflectance factors, which are divided by pi. */
   brf?: boolean;
-  /** By default true: interpolated values below zero become zero. */
+  /** True by default: interpolated values below zero become zero. */
   clampNegatives?: boolean;
-  /** Klems and tensor trees: the back side. */
+  /** Takes the back side of Klems files and tensor trees. */
   back?: boolean;
-  /** Of a file of several parts and bands; what info calls parts names them. A transmission's wo is mirrored through
-   * the surface. */
+  /** The part of a file with several parts and bands, which the entry parts of info lists. A transmission's wo is
+   * mirrored through the surface. */
   part?: "reflection-front" | "reflection-back" | "transmission-front" | "transmission-back";
   band?: string;
-  /** Zemax: scale each incidence to its TIS. */
+  /** Scales each incidence of Zemax files to its TIS. */
   scaleToTis?: boolean;
-  /** Of a file of several materials (a book, neural encodings), the one of that name; by default the first. */
+  /** The name of one of several materials in a file (a book, neural encodings); by default the first. */
   entry?: string;
-  /** Of codes of Neural Processes: their decoder, which is another file. */
+  /** The decoder for codes of Neural Processes, which is another file. */
   decoder?: Blob | Uint8Array | ArrayBuffer;
 }
 
-/** A file's bytes, whatever its format, or an analytic BRDF such as "ggx:alpha_x=0.2,alpha_y=0.2,f0=0.8". A model is a
- * Model, a surface a Surface. Rejects with an Error of one line, as do all others: of options that there are not
- * and of values of another kind too. The bytes are kept (a Blob need not be in memory): a worker that was stopped
- * reads them again. */
+/** Opens a file's bytes in any format, or an analytic BRDF such as "ggx:alpha_x=0.2,alpha_y=0.2,f0=0.8". A model
+ * becomes a Model, a surface a Surface. Rejects with an Error of one line, as all functions do. Unknown options and
+ * values of a wrong type are errors too. The bytes are kept (a Blob need not be in memory), since a worker that was
+ * stopped reads them again. */
 export function open(data: Uint8Array | ArrayBuffer | Blob | string, options?: OpenOptions): Promise<Material | Model | Surface>;
 
 /** Loads and compiles the library before it is needed. */
@@ -58,10 +61,10 @@ export function preload(): Promise<void>;
 export function memory(): number;
 
 export interface FitOptions {
-  /** Of the model; by default the material's, "fitted". */
+  /** The name of the model; by default the material's with "fitted" behind it. */
   name?: string;
-  /** Bytes, also as a text such as "16K", or "auto"; without a budget or model 16384 within two fetches (of some nodes
-   * three, anisotropic: six). */
+  /** The most bytes, a number or a text such as "16K", or "auto". Without a budget or model 16384 bytes within two
+   * fetches (three for some nodes, six for anisotropic materials). */
   budget?: number | string;
   fetches?: number;
   lobes?: number;
@@ -70,8 +73,8 @@ export interface FitOptions {
   /** A product of tables, as the command line's --model. */
   model?: string;
   tables?: string[];
-  /** What the owner of a measurement makes of it, or what was measured; by default the material's `target`, but
-   * of one lobe and without `symmetrize` the function. */
+  /** Fits the function that interpolates the measured values, or nodes, the measured values alone. The default is the
+   * material's `target`, but the function for one lobe and without `symmetrize`. */
   target?: "function" | "nodes";
   holdOut?: string;
   smooth?: number | "auto";
@@ -93,24 +96,26 @@ export interface CompareOptions {
 }
 
 export interface ExportOptions {
-  /** Of functions and files: letters, digits, single underscores. */
+  /** The name of functions and files: letters, digits, single underscores. */
   name?: string;
   exact?: boolean;
-  /** Of languages but C++: texels are multiplied in half precision. */
+  /** Multiplies texels in half precision, in all languages but C++. */
   half?: boolean;
   mips?: boolean;
   cells?: number;
   count?: number;
   seed?: number;
   entries?: boolean;
-  /** Keep the fit's notes in "burnish". */
+  /** Keeps the fit's notes in "burnish". */
   notes?: boolean;
 }
 
-/** One file: those of the verb `convert`. "exr" is a model's own file, of others an image of slices. */
+/** Exports of one file: those of the verb `convert`. "exr" is a model's own file, for other materials an image of
+ * slices. */
 export type FileKind = "burnish" | "model" | "exr" | "merl" | "utia" | "rgl" | "mbsdf" | "zemax" | "tensortree" | "openmaterial" |
   "astm" | "csv";
-/** Several files, of models: those of the verb `export`; of surfaces ktx2, dds, png, gltf, three, html and languages. */
+/** Exports of several files: for models those of the verb `export`; for surfaces ktx2, dds, png, gltf, three, html and
+ * languages. */
 export type FilesKind = "ktx2" | "dds" | "cube" | "png" | "gltf" | "materialx" | "usda" | "mdl" | "three" | "babylon" | "html" | Language;
 export interface NamedFile { name: string; bytes: Uint8Array; }
 
@@ -121,7 +126,7 @@ export interface Volume {
   size: [number, number, number];
   channels: number;
   /** [phi_d][theta_d][theta_h][channel]. Cell (x, y, z) is the value at theta_h = ((x + 1/2) / size[0])^2 pi/2,
-   * theta_d = (y + 1/2) / size[1] pi/2, phi_d = (z + 1/2) / size[2] 2 pi; one beyond the horizon or unknown has the
+   * theta_d = (y + 1/2) / size[1] pi/2, phi_d = (z + 1/2) / size[2] 2 pi. A cell beyond the horizon or unknown has the
    * nearest known value of its row along theta_d. */
   data: Float32Array;
 }
@@ -134,8 +139,8 @@ export interface Images {
   model: Uint8Array[];
 }
 
-/** What a measurement is interpolated from: cells of a half/difference table, [theta_h][theta_d][phi_d][channel], NaN a
- * hole, or the tables of an RGL file. */
+/** The values that a measurement is interpolated from: cells of a half/difference table,
+ * [theta_h][theta_d][phi_d][channel], NaN a hole, or the tables of an RGL file. */
 export type Table =
   | {kind: "half_diff"; size: [number, number, number]; fullCircle: boolean; channels: number; data: Float32Array}
   | {kind: "rgl"; channels: number; isotropic: boolean; reduction: 1 | 2 | 4; jacobian: boolean; phi: Float32Array;
@@ -148,49 +153,52 @@ export class Material {
   readonly channels: number;
   readonly isotropic: boolean;
   readonly measurement: boolean;
-  /** What a fit of it by default follows: see FitOptions. */
+  /** The default target of a fit: see FitOptions. */
   readonly target: "function" | "nodes";
-  /** Names of what a file of several materials holds; empty of others. */
+  /** The names of the materials in a file of several; empty for other files. */
   readonly entries: string[];
-  /** The JSON of `burnish info --json`. */
+  /** Returns the JSON of `burnish info --json`. */
   info(call?: Call): Promise<Record<string, any>>;
-  /** n x 3 unit vectors each, to n x channels values; NaN where the material knows none. */
+  /** Takes n x 3 unit vectors each, and returns n x channels values; NaN where the material has none. */
   evaluate(wi: ArrayLike<number>, wo: ArrayLike<number>, call?: Call): Promise<Float32Array>;
-  /** Share reflected of light from theta_i (radians, below pi/2), n x channels; NaN where nothing is known. */
+  /** Returns the share of light from theta_i (radians, below pi/2) that is reflected, n x channels; NaN where it is
+   * unknown. */
   albedo(thetas: ArrayLike<number>, options?: Call & {phi?: number}): Promise<Float32Array>;
-  /** The material resampled for a 3-D texture; of an anisotropic one at one phi_h. */
+  /** Resamples the material for a 3-D texture, an anisotropic material at one phi_h. */
   volume(cells?: {thetaH?: number; thetaD?: number; phiD?: number; phiH?: number}, call?: LongCall): Promise<Volume>;
   /** Null where the material is no such table. */
   table(call?: Call): Promise<Table | null>;
-  /** In a worker of its own, which ends afterwards; several may run at once. The options are the verb's. */
+  /** Fits a model in a worker of its own, which ends afterwards. Several fits may run at once. The options are those of
+   * the verb `fit`. */
   fit(options?: FitOptions, call?: LongCall): Promise<Model>;
-  /** The JSON of `burnish compare --json`: a list, an object a model. */
+  /** Returns the JSON of `burnish compare --json`: a list with an object for each model. */
   compare(models: Material | Material[], options?: CompareOptions, call?: Call): Promise<Record<string, any>[]>;
   images(model: Material, options?: {size?: number; symmetrize?: boolean}, call?: Call): Promise<Images>;
   export(kind: FileKind, options?: ExportOptions, call?: ExportCall): Promise<Uint8Array>;
   export(kind: FilesKind, options?: ExportOptions, call?: ExportCall): Promise<NamedFile[]>;
-  /** Gives its memory back; whatever is asked of it afterwards rejects. */
+  /** Gives the material's memory back. Its methods reject afterwards. */
   close(): void;
 }
 
 export interface ShaderOptions {
-  /** burnish_NAME(wi, wo) and burnish_NAME_world(n, t, l, v). */
+  /** The NAME of the functions burnish_NAME(wi, wo) and burnish_NAME_world(n, t, l, v). */
   name?: string;
-  /** Texels are weighed by the shader, in floats (C++: always); else one filtered read a lookup. */
+  /** The shader interpolates texels in floats (C++: always). Otherwise each lookup is one filtered read. */
   exact?: boolean;
   halfProducts?: boolean;
   linesAre1d?: boolean;
 }
 
 export interface ShaderTexture {
-  /** Of the uniform: a sampler2D, or where depth > 0 a sampler3D; clamp to the edge, linear (exact: nearest). */
+  /** The name of the uniform: a sampler2D, or where depth > 0 a sampler3D; clamp to the edge, linear
+   * (exact: nearest). */
   name: string;
   width: number;
   height: number;
   depth: number;
   channels: number;
   format: "half" | "float" | "rgb9e5" | "unorm8";
-  /** [z][y][x][channel], of rgb9e5 a word a texel, ready for texImage2D or texImage3D with `gl`. */
+  /** [z][y][x][channel], for rgb9e5 one word for each texel; ready for texImage2D or texImage3D with `gl`. */
   data: Float32Array | Uint8Array | Uint32Array;
   /** Names of WebGL2's constants. */
   gl: {internalFormat: string; format: string; type: string};
@@ -199,7 +207,7 @@ export interface ShaderTexture {
 export interface Shader {
   language: Language;
   filter: "exact" | "hardware";
-  /** Without a #version line; its textures are its only uniforms. */
+  /** The source text, without a #version line. Its textures are its only uniforms. */
   code: string;
   function: string;
   functionWorld: string;
@@ -208,15 +216,16 @@ export interface Shader {
   textures: ShaderTexture[];
 }
 
-/** What `edit` does, in this order. */
+/** The changes that `edit` makes, in this order. */
 export interface Edit {
-  /** Radians by which the colours that lobes reflect turn about grey, of all or of each; three channels only. */
+  /** Turns the colours that lobes reflect about grey by these radians: one number for all lobes, or one for each. Three
+   * channels only. */
   hue?: number | number[];
-  /** Factor of tan(theta_h / 2) in tables over theta_h, 0.1 to 10: how much wider highlights become. */
+  /** Makes highlights wider by this factor of tan(theta_h / 2), 0.1 to 10, in tables over theta_h. */
   roughness?: number;
-  /** Of all lobes, or of each: a factor for all channels, or one a channel. */
+  /** Scales all lobes, or each one: by a factor for all channels, or one for each channel. */
   scale?: number | number[] | (number | number[])[];
-  /** A Lambertian part to add: albedo / pi, one number or one a channel. */
+  /** Adds a Lambertian part with this albedo: one number, or one for each channel. */
   diffuse?: number | number[];
 }
 
@@ -226,28 +235,29 @@ export class Model extends Material {
   /** Filtered reads of one evaluation. */
   readonly fetches: number;
   readonly expression: string;
-  /** Of what fit made: the JSON of `burnish fit --json`. */
+  /** For a model that fit made, the JSON of `burnish fit --json`. */
   readonly report?: Record<string, any>;
   shader(language: Language, options?: ShaderOptions, call?: Call): Promise<Shader>;
-  /** A new model; this one stays as it is. */
+  /** Returns a new model; this one stays as it is. */
   edit(edit: Edit, call?: Call): Promise<Model>;
 }
 
 export interface SurfaceMap {
-  /** Of the uniform, a sampler2D that repeats, linear within levels and between them. */
+  /** The name of the uniform, a sampler2D that repeats, linear within levels and between them. */
   name: string;
   width: number;
   height: number;
   format: "half" | "unorm8";
-  /** Four components a texel, ready for texImage2D with `gl`; the largest level first. */
+  /** Four components for each texel, ready for texImage2D with `gl`; the largest level first. */
   levels: (Uint8Array | Uint16Array)[];
   gl: {internalFormat: string; format: string; type: string};
 }
 
 export interface SurfaceShader extends Shader {
-  /** burnish_NAME_at(u, v, lod) gives a place, once a pixel, by these; burnish_NAME(wi, wo, place) its f_r, once a light. */
+  /** burnish_NAME_at(u, v, lod) reads a place from these maps, once for each pixel. burnish_NAME(wi, wo, place) gives
+   * its f_r, once for each light. */
   maps: SurfaceMap[];
-  /** Whether a place has a frame of its own: place.n is its normal. */
+  /** True if a place has a frame of its own: place.n is its normal. */
   framed: boolean;
   placeCost: Shader["cost"];
 }
@@ -256,7 +266,7 @@ export interface SurfaceShader extends Shader {
 export class Surface extends Model {
   readonly width: number;
   readonly height: number;
-  /** The uniform model of a place; v runs downwards. */
+  /** Returns the uniform model of a place; v runs downwards. */
   place(u: number, v: number, options?: Call & {lod?: number}): Promise<Model>;
   shader(language: Language, options?: ShaderOptions, call?: Call): Promise<SurfaceShader>;
 }

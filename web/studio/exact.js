@@ -2,7 +2,7 @@
 // shader.
 import {toRgb} from "./vectors.js";
 
-export const kPasses = 16, kDirections = 2;  // of light from all around, in each pixel and pass
+export const kPasses = 16, kDirections = 2;  // of the environment, in each pixel and pass
 const kPatience = 120;                       // milliseconds that other requests wait for the worker
 let pace = 100;                              // pairs a millisecond
 

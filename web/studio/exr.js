@@ -10,7 +10,7 @@ const isExr = (bytes) => bytes.length > 8 && new DataView(bytes.buffer, bytes.by
 
 // Returns {attribute: Reader}; "tiles" only where there are tiles.
 function readHeader(from) {
-  if (from.u32() !== kMagic) throw expected("an OpenEXR file", "another");
+  if (from.u32() !== kMagic) throw expected("an OpenEXR file", "another file");
   const flags = from.u32();
   if (flags & (kDeep | kParts)) throw expected("flat pixels of one part", flags & kDeep ? "deep pixels" : "several parts");
   const header = new Map();

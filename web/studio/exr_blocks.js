@@ -225,7 +225,7 @@ export function huffman(from, size) {
   for (let at = 0; at < size;) {
     let code = 0, length = 0, symbol;
     do {
-      if (++length > 58 || from.at > end) throw expected("one of Huffman's codes", "another");
+      if (++length > 58 || from.at > end) throw expected("one of Huffman's codes", "another code");
       code = 2 * code + next(1);
       symbol = code >= starts[length] ? symbols[length][code - starts[length]] : undefined;
     } while (symbol === undefined);

@@ -16,7 +16,7 @@ const kCurve = [700, 1400, 2800, 5600, 11200, 22400, 44800];
 const kMaxFits = 4;  // at once, each with memory of its own
 // The hint explains bytes and fetches, and the cost of leaving fetches open.
 const kHint = "2700, 16K, 1M or auto. Fetches: filtered reads a light";
-const kOpen = "; left empty, as many as the bytes are worth, which may be 20 and more.";
+const kOpen = "; an empty field allows as many as lower the error, which may be 20 and more.";
 const kNothing = 1e-9;  // smaller figures are roundings
 
 let stop = null, fitted = null, choose = () => {}, showResults = () => {}, followed = null;
@@ -145,8 +145,8 @@ const figure = (x, digits) => make("span", {title: x}, number(Math.abs(x) < kNot
 
 // The explanations of the figures, shown as titles and below the table.
 const kExplained = {
-  PSNR: "how alike pictures of lit spheres are, in decibels; more is better",
-  SSIM: "how alike their structures are; 1 is equal",
+  PSNR: "similarity of pictures of lit spheres in decibels; more is better",
+  SSIM: "similarity of their structures; 1 is equal",
   relative: "mean ratio of both values less 1: 0.1 is a mean difference of 10 %",
   "rms log": "root mean square of that ratio's logarithm; large errors add more",
   "log cos": "mean difference of ln(1 + f cos θi); dark values add little",
@@ -177,7 +177,7 @@ function moreFigures(reference, model, {albedo, nodes, expected, unknown_fractio
     nodes ? table(`At ${nodes.count.toLocaleString("en")} measured nodes`, ["of", "relative", "rms log", "log cos", "rms"],
                   [row([ofReference, ...scores(nodes.itself)]), row([ofModel, ...scores(nodes)])]) : "",
     expected ? expectedTable(expected, ...names()) : "",
-    unknown > 0 || pixels > 0 ? make("p", {class: "hint"}, `Left out, where a side knows nothing: ${number(100 * unknown, 3)} % of the directions and ${pixels} pixels.`) : "",
+    unknown > 0 || pixels > 0 ? make("p", {class: "hint"}, `Left out, where a material has no value: ${number(100 * unknown, 3)} % of the directions and ${pixels} pixels.`) : "",
   ];
 }
 
@@ -188,8 +188,8 @@ const comparedWith = (reference) => state.entries.filter((entry) => reference &&
 function drawFigures() {
   const reference = referenceOf(state.shown), place = find("#figures"), models = comparedWith(reference);
   if (!models.length) {
-    place.replaceChildren(make("p", {class: "hint"}, "The figures of each fit beside its source, and the cost of its shader."));
-    find("#compared").replaceChildren(make("p", {class: "hint"}, "Albedo and errors of what stands beside something else."));
+    place.replaceChildren(make("p", {class: "hint"}, "This panel shows the figures of each fit beside its source, and the cost of its shader."));
+    find("#compared").replaceChildren(make("p", {class: "hint"}, "This panel shows albedo and errors of materials beside each other."));
     return;
   }
   const heads = ["Model", ...Object.keys(kExplained).map(explained)];

@@ -5,7 +5,7 @@ import {onChange, state} from "./state.js";
 const span = ([low, high]) => `${number(low, 3)}° to ${number(high, 3)}°`;
 
 const kDrawn = {
-  shader: () => "by the shader that is given away",
+  shader: () => "by the shader that is exported",
   whole: (db, what) => `from its own tables, ${number(db, 3)} dB from ${what}`,
   table: (db, what, computed) => {
     const table = `through a table, ${number(db, 3)} dB from ${what}`;
@@ -70,7 +70,7 @@ function draw() {
   find("#info").replaceWith(place);
   drawReadings(entry?.readings);
   if (!entry) {
-    place.replaceChildren(make("p", {class: "hint"}, "Format, conventions, holes, albedo and reciprocity of what is open."));
+    place.replaceChildren(make("p", {class: "hint"}, "This panel shows format, conventions, holes, albedo and reciprocity of the open material."));
     return;
   }
   const {info} = entry;

@@ -23,7 +23,7 @@ function fromBase64Url(text) {
 // Throws Error where the fragment would be too long to be read.
 export function linkOf(name, bytes) {
   const short = name.replace(/[^\w-]+/g, "_").slice(0, 40), fragment = `#m=${short}.${toBase64Url(bytes)}`;
-  if (fragment.length > kLongest) throw new Error(`A link holds at most ${kLongest.toLocaleString("en")} characters, this model takes ${fragment.length.toLocaleString("en")}: give its .burnish file away`);
+  if (fragment.length > kLongest) throw new Error(`A link holds at most ${kLongest.toLocaleString("en")} characters, this model takes ${fragment.length.toLocaleString("en")}: share its .burnish file instead`);
   return `${location.origin}${location.pathname}${fragment}`;
 }
 
@@ -36,7 +36,7 @@ export async function openLink() {
     const [, name, data] = fragment.match(/^#m=([\w-]{0,40})\.(.*)$/) ?? [];
     if (!data) throw new Error("expected #m=NAME.DATA");
     const bytes = fromBase64Url(data);
-    if (!isCompact(bytes)) throw new Error("expected the bytes of a .burnish file, found others");
+    if (!isCompact(bytes)) throw new Error("expected the bytes of a .burnish file, found other bytes");
     await openOne(bytes, `${name || "linked"}.burnish`);
   } catch (error) {
     say(`The link carries no material: ${lineOf(error)}`, "error");

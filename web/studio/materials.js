@@ -35,7 +35,7 @@ async function opening(data, name, more, options) {
     showOpened(entry);
     // The full information takes longer than the picture.
     bar.removeAttribute("value");
-    find("#opening-text").textContent = `${name}: what it is`;
+    find("#opening-text").textContent = `${name}: reading its properties`;
     entry.info = await material.info({signal: mine.signal});
     entry.readings = readings(entry, wanted);
   } catch (error) {

@@ -180,7 +180,7 @@ const redrawImages = guarded(async () => {
   const first = await halfDiffImage(state.shown), figures = [first.figure];
   if (state.beside) figures.push((await halfDiffImage(state.beside, first.scale)).figure);
   place.replaceChildren(make("div", {class: "images"}, ...figures),
-    make("p", {class: "hint"}, "Right: θh, as its root. Up: θd. Bright by the logarithm."));
+    make("p", {class: "hint"}, "Right: the root of θh. Up: θd. Brightness: the logarithm of f."));
 });
 
 const redrawAlbedo = guarded(async () => {

@@ -39,7 +39,7 @@ const guarded = (task) => async (event) => {
   const button = event.currentTarget, focused = document.activeElement === button;
   button.disabled = true;
   try {
-    await stoppable(find("#take"), "what is taken away", task);
+    await stoppable(find("#take"), "the export", task);
   } catch (error) {
     sayError(error);
   } finally {
@@ -62,7 +62,7 @@ async function copy(text, what) {
     say(`${what} copied`);
     return true;
   } catch {
-    say("The browser lets nothing be copied here", "error");
+    say("The browser does not allow copying here", "error");
     return false;
   }
 }
@@ -95,7 +95,7 @@ function shaderGroup(entry) {
 }
 
 function linkGroup(entry) {
-  const said = make("p", {class: "hint two-lines"}, "The whole material in the address: nothing is uploaded.");
+  const said = make("p", {class: "hint two-lines"}, "The address holds the whole material: nothing is uploaded.");
   const shown = make("input", {type: "text", id: "link-text", readonly: true, hidden: true, "aria-label": "Link", onfocus: () => shown.select()});
   return make("div", {}, make("h3", {}, "Link"), make("div", {class: "buttons"},
     make("button", {type: "button", id: "link", onclick: guarded(async (signal) => {
@@ -107,7 +107,7 @@ function linkGroup(entry) {
       // The link is shown, to be copied by hand.
       [shown.value, shown.hidden] = [link, false];
       shown.focus();
-      say("The browser lets nothing be copied here; the link is below its button");
+      say("The browser does not allow copying here; the link is below its button");
     })}, "Copy link")), shown, said);
 }
 
@@ -174,7 +174,7 @@ function pictureGroup() {
 function draw() {
   const place = find("#take"), model = modelShown();
   if (!state.shown) {
-    place.replaceChildren(make("p", {class: "hint"}, "Shaders, textures and files of what is open; pictures; a link that carries a model."));
+    place.replaceChildren(make("p", {class: "hint"}, "This panel exports shaders, textures and files of the open materials, pictures, and a link that holds a model."));
     return;
   }
   const surface = isSurface(model), files = surface ? surfaceFiles : modelFiles, apart = [state.shown, state.beside].filter((entry) => entry && !isSurface(entry));
@@ -183,7 +183,7 @@ function draw() {
     model ? make("div", {}, make("h3", {}, surface ? "Surface" : "Model"), make("div", {class: "buttons"}, ...Object.entries(files).map(([kind, title]) => saveButton(model, kind, title)))) : "",
     model ? linkGroup(model) : "",
     ...apart.filter(({spec}) => spec === "openpbr").map((each) => make("div", {"data-openpbr": each.id}, make("h3", {}, `OpenPBR of ${each.name}`),
-      make("p", {class: "hint"}, "The inputs as the sliders have them; no fit is needed."),
+      make("p", {class: "hint"}, "Exports the inputs that the sliders set; no fit is needed."),
       make("div", {class: "buttons"}, ...Object.entries(openPbrFiles).map(([kind, title]) => saveButton(each, kind, title))))),
     ...apart.map((each) =>
       make("div", {"data-of": each.id}, make("h3", {}, `${each.name} as`),
