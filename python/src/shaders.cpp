@@ -106,22 +106,21 @@ void bind_shaders(nb::module_& m) {
         return fmt::format("<burnish shader: {}, {}, {}>", counted(s.text.size(), "byte"),
                            counted(s.textures.size(), "texture"), to_string(s.cost));
       });
-  m.def(
-      "generate_shader", &shader_of, nb::arg("model"), nb::arg("language") = "glsl", nb::kw_only(),
-      nb::arg("exact") = false, nb::arg("half") = false, nb::arg("name") = "brdf",
-      nb::call_guard<nb::gil_scoped_release>(),
-      fmt::format(
-          "Returns a shader of two functions, as `burnish export --to` writes them. burnish_NAME(wi, wo) is\n"
-          "f_r in 1/sr of unit vectors of the local frame. burnish_NAME_world(n, t, l, v) takes vectors of\n"
-          "the world.\n"
-          "\n"
-          "language: {}; cpp has its tables inside.\n"
-          "exact: the shader interpolates texels in floats, instead of the texture unit; cpp always does "
-          "so.\n"
-          "half: texels are multiplied in half precision (mediump, min16float, half, f16), within 1 %.\n"
-          "Neither exact nor cpp allows it.",
-          quoted_names(language_names(), "or"))
-          .c_str());
+  m.def("generate_shader", &shader_of, nb::arg("model"), nb::arg("language") = "glsl", nb::kw_only(),
+        nb::arg("exact") = false, nb::arg("half") = false, nb::arg("name") = "brdf",
+        nb::call_guard<nb::gil_scoped_release>(),
+        fmt::format(
+            "Returns a shader of two functions, as `burnish export --to` writes them:\n"
+            "burnish_NAME(wi, wo) returns f_r in 1/sr of unit vectors of the local frame;\n"
+            "burnish_NAME_world(n, t, l, v) does the same of vectors of the world.\n"
+            "\n"
+            "language: {}; cpp has its tables inside.\n"
+            "exact: the shader interpolates texels in floats, instead of the texture unit; cpp always does "
+            "so.\n"
+            "half: texels are multiplied in half precision (mediump, min16float, half, f16), within 1 %.\n"
+            "Neither exact nor cpp allows it.",
+            quoted_names(language_names(), "or"))
+            .c_str());
   m.def("write_ktx2", &write_ktx2, nb::arg("path"), nb::arg("texture"), nb::kw_only(),
         nb::arg("compressed") = true, nb::call_guard<nb::gil_scoped_release>(),
         "Writes a shader's texture as a KTX2 file. compressed: compresses it by Zstandard.");

@@ -48,7 +48,7 @@ GltfDocument::GltfDocument(const FileBytes& file, const std::filesystem::path& f
   try {
     root_ = json::parse(text);
   } catch (const json::parse_error& error) {
-    throw Error(name_, offset + error.byte, "JSON of glTF", "what is none");
+    throw Error(name_, offset + error.byte, "JSON of glTF", "other text");
   }
 }
 
