@@ -205,19 +205,19 @@ TEST_F(SurfaceCommand, WritesOverNothingThatItReads) {
   fs::create_symlink("capture/00001.exr", file("linked"));
   fs::create_hard_link(file("capture/capture.json"), file("form.png"));
   refused(1, "capture' -o '{0}/capture/00001.exr'",
-          "expected an output that is not also an input, found one of");
+          "expected an output that is not also an input, found a file of");
   refused(1, "capture' -o '{0}/linked'",
-          "linked: expected an output that is not also an input, found one of");
-  refused(1, "capture' -o '{0}/w' --picture '{0}/form.png'",
-          "form.png: expected a file to write that is not");
+          "linked: expected an output that is not also an input, found a file of");
+  refused(1, "capture' -o '{0}/w' --picture '{0}/form.png'", "form.png: expected an output that is not");
   fs::create_hard_link(file("capture/00002.exr"), file("v.part"));  // a fit that begins anew removes it
-  refused(1, "capture' -o '{0}/v'", "v.part: expected an output that is not also an input, found one of");
+  refused(1, "capture' -o '{0}/v'", "v.part: expected an output that is not also an input, found a file of");
   EXPECT_TRUE(fs::exists(file("v.part")));
   EXPECT_EQ(read(file("capture/00001.exr")), picture);
   EXPECT_EQ(read(file("capture/capture.json")), form);
   ASSERT_EQ(burnish(kFit).status, 0);
   const std::string surface = read(file("wall.burnish"));
-  refused(1, "capture' -o '{0}/wall.burnish' --book '{0}/wall.burnish'", "is not read, found the book");
+  refused(1, "capture' -o '{0}/wall.burnish' --book '{0}/wall.burnish'",
+          "is not also an input, found the book");
   EXPECT_EQ(read(file("wall.burnish")), surface);
   EXPECT_FALSE(fs::exists(file("w")));
 }

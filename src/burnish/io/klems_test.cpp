@@ -266,7 +266,7 @@ TEST(Klems, SaysWhatIsWrong) {
   EXPECT_THAT(klems_error("<WindowElement/>"), HasSubstr("Layer"));
   EXPECT_THAT(klems_error(window(kBasis, good, "TensorTree3")), HasSubstr("Columns"));
   EXPECT_THAT(klems_error(window(kBasis, matrix("Absorptance Front", kValues))),
-              HasSubstr("'Reflection Front' or of another part, found 'Absorptance Front'"));
+              HasSubstr("'Reflection Front' or another part, found 'Absorptance Front'"));
   EXPECT_THAT(klems_error(window("", good)), HasSubstr("AngleBasis named"));
   EXPECT_THAT(klems_error(window(basis(ring(0, 30, 1)), good)), HasSubstr("up to 90"));
   EXPECT_THAT(klems_error(window(basis(ring(0, 30, 1) + ring(40, 90, 2)), good)),
