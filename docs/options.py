@@ -27,7 +27,9 @@ const model = await paint.fit({budget: "16K", fetches: 2, holdOut: "half=1"});
 
 `fit` and `batch` of the command line, `fit` and `batch` in Python and `fit` of the [page's package](../../web/package)
 read the same table. A wrong value or combination gives the same message everywhere, and the exit code 2 on the command
-line; only the spelling of the options differs. [From a measurement to a model](fitting.md) explains the choices.
+line. Only the spelling of the options differs. [From a measurement to a model](fitting.md) explains the choices and
+the words: fetches, lobes, lines, hemispheres, projections, warps. [Nodes](nodes.md) are values as they were measured. A
+*book* is what the [materials of a library](library.md#a-book-a-few-pairs-of-a-material-are-enough) share.
 
 """
 HEAD = ["option", "takes", "default", "does"]
