@@ -1,7 +1,7 @@
 // -log2(1 - r) never falls with r.
 module order_log #(
   parameter int RestBits = 14,
-  parameter int LogBits  = 20
+  parameter int LogBits  = 19
 ) (
   input logic                clk_i,
   input logic [RestBits-1:0] rest_i

@@ -2,8 +2,8 @@
 // rises, and is 0 for b = 0.
 module order_product #(
   parameter int ABits   = 10,
-  parameter int BBits   = 24,
-  parameter int Drop    = 10,
+  parameter int BBits   = 22,
+  parameter int Drop    = 9,
   parameter int OutBits = 14,
   parameter int First   = 1,
   parameter int Count   = 8

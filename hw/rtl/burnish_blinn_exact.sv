@@ -4,17 +4,17 @@
 //   value_o                    c^exponent (2^OutBits - 1), c = n.h / (|n| |h|), clamped at 0
 // One value a clock, valid/ready on both sides. Latency: 12 + Depth clocks.
 module burnish_blinn_exact #(
-  parameter int VersineBits    = 20,
-  parameter int OutBits        = 8,
-  parameter int Depth          = 6,
-  parameter int LogIndexBits   = 8,
-  parameter int LogWordBits    = 16,
-  parameter int LogSlopeBits   = 0,
-  parameter int LogCoarseShift = 3,
-  parameter int ExpIndexBits   = 4,
-  parameter     RsqrtFile      = "rsqrt.mem",
-  parameter     LogFile        = "log.mem",
-  parameter     ExpFile        = "exp.mem"
+  parameter int VersineBits  = 20,
+  parameter int OutBits      = 8,
+  parameter int Depth        = 6,
+  parameter int LogBits      = 20,
+  parameter int LogIndexBits = 7,
+  parameter int LogWordBits  = 16,
+  parameter int LogSlopeBits = 0,
+  parameter int ExpIndexBits = 4,
+  parameter     RsqrtFile    = "rsqrt.mem",
+  parameter     LogFile      = "log.mem",
+  parameter     ExpFile      = "exp.mem"
 ) (
   input  logic               clk_i,
   input  logic               rst_ni,
@@ -37,9 +37,9 @@ module burnish_blinn_exact #(
     .valid_o(valid), .ready_i(ready), .versine_o(versine), .exponent_o(exponent)
   );
   burnish_exact #(
-    .CosineBits(VersineBits), .OutBits(OutBits), .Versine(1), .Depth(Depth), .LogIndexBits(LogIndexBits),
-    .LogWordBits(LogWordBits), .LogSlopeBits(LogSlopeBits), .LogCoarseShift(LogCoarseShift),
-    .ExpIndexBits(ExpIndexBits), .LogFile(LogFile), .ExpFile(ExpFile)
+    .CosineBits(VersineBits), .OutBits(OutBits), .Versine(1), .Depth(Depth), .LogBits(LogBits),
+    .LogIndexBits(LogIndexBits), .LogWordBits(LogWordBits), .LogSlopeBits(LogSlopeBits), .ExpIndexBits(ExpIndexBits),
+    .LogFile(LogFile), .ExpFile(ExpFile)
   ) i_exact (
     .clk_i, .rst_ni, .valid_i(valid), .ready_o(ready), .exponent_i(exponent), .input_i(versine),
     .valid_o, .ready_i, .value_o

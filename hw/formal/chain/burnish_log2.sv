@@ -1,13 +1,12 @@
 // In place of burnish_log2: what order_log proves.
 module burnish_log2 #(
-  parameter int RestBits    = 14,
-  parameter int LogBits     = 20,
-  parameter int IndexBits   = 8,
-  parameter int WordBits    = 16,
-  parameter int SlopeBits   = 0,
-  parameter int CoarseShift = 3,
-  parameter int Cuts        = 0,
-  parameter     File        = "log.mem"
+  parameter int RestBits  = 14,
+  parameter int LogBits   = 19,
+  parameter int IndexBits = 7,
+  parameter int WordBits  = 16,
+  parameter int SlopeBits = 0,
+  parameter int Cuts      = 0,
+  parameter     File      = "log.mem"
 ) (
   input  logic                clk_i,
   input  logic                advance_i,

@@ -1,8 +1,8 @@
 // In place of burnish_product: what order_product proves.
 module burnish_product #(
   parameter int ABits    = 10,
-  parameter int BBits    = 24,
-  parameter int Drop     = 10,
+  parameter int BBits    = 22,
+  parameter int Drop     = 9,
   parameter int OutBits  = 14,
   parameter bit Saturate = 1,
   parameter int Cuts     = 0

@@ -14,7 +14,7 @@ namespace burnish {
 namespace {
 
 constexpr std::array kInfos = {
-    UnitInfo{UnitMethod::exact, "exact", "2^(e log2 c)", PowerMethod::exact, 3, 15, 16, 1, 1},
+    UnitInfo{UnitMethod::exact, "exact", "2^(e log2 c)", PowerMethod::exact, 3, 20, 16, 1, 1},
     UnitInfo{UnitMethod::paper_literal, "paper_literal", "a (c^2 - c) + c, clamped", PowerMethod::quadratic,
              3, 8, 16, 1, 4},
     UnitInfo{UnitMethod::paper, "paper", "c max(0, 1 - a v)", PowerMethod::quadratic, 3, 8, 16, 1, 1},
@@ -22,6 +22,8 @@ constexpr std::array kInfos = {
     UnitInfo{UnitMethod::two_piece, "two_piece", "max(0, m - n e v)^2 + o", PowerMethod::two_piece, 2, 9, 12,
              1, 1},
     UnitInfo{UnitMethod::schlick, "schlick", "c / (c + e v)", PowerMethod::schlick, 2, 13, 12, 1, 1},
+    UnitInfo{UnitMethod::quadratics, "quadratics", "2^(e log2 c), quadratics", PowerMethod::exact, 3, 16, 16,
+             1, 1024},
 };
 
 void check(const char* what, int value, int min, int max) {
@@ -43,6 +45,8 @@ std::unique_ptr<UnitCore> make_core(const UnitConfig& config) {
       return make_two_piece_core(config);
     case UnitMethod::schlick:
       return make_schlick_core(config);
+    case UnitMethod::quadratics:
+      return make_quadratics_core(config);
   }
   throw Error("hardware method: unknown");
 }
@@ -70,7 +74,7 @@ SpecularUnit::SpecularUnit(const UnitConfig& config) : config_(config) {
   const UnitInfo& info = unit_info(config.method);
   if (config_.depth == 0) config_.depth = info.min_depth;
   if (config_.coefficient_bits == 0) config_.coefficient_bits = info.coefficient_bits;
-  const bool exact = config.method == UnitMethod::exact;
+  const bool exact = config.method == UnitMethod::exact || config.method == UnitMethod::quadratics;
   check("output bits", config.output_bits, 8, 12);
   check("cosine bits", config.cosine_bits, std::max(12, config.output_bits + (exact ? 2 : 5)),
         exact ? config.output_bits + 12 : 24);

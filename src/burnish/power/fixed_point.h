@@ -21,6 +21,7 @@ enum class UnitMethod {
   w8,             ///< max(0, 1 - k v)^8
   two_piece,      ///< max(0, m - n s)^2 + o, s = e v, with small tables of m, n and o
   schlick,        ///< c / (c + e v), with a divider
+  quadratics,     ///< 2^(e log2 c) as graphics processors form it: both functions as 64 quadratics
 };
 
 enum class UnitInput {

@@ -25,6 +25,7 @@ std::unique_ptr<UnitCore> make_paper_core(const UnitConfig& config);
 std::unique_ptr<UnitCore> make_w8_core(const UnitConfig& config);
 std::unique_ptr<UnitCore> make_two_piece_core(const UnitConfig& config);
 std::unique_ptr<UnitCore> make_schlick_core(const UnitConfig& config);
+std::unique_ptr<UnitCore> make_quadratics_core(const UnitConfig& config);
 
 constexpr std::uint64_t power_of_two(int n) noexcept {
   return std::uint64_t{1} << n;

@@ -12,29 +12,38 @@ namespace {
 // relative precision of v. That part is linear in r plus a table; the product with e, exact and then cut,
 // splits into whole octaves, a shift, and a fraction whose power of two is a table with slopes.
 //
+// With 8 bits, -log2(1 - r) is 2 r, a table over the leading bits of r, and -9/16 + 1/128 of the bits below. The slope
+// 185/128 within a cell is near 1/ln 2, which counts where r is small and e is large. The table holds no more than the
+// bump of a binary logarithm, so its words are narrow. A c below 2^-8 needs no octaves: the unit takes c down to 2^-9
+// as 2^-8, and a smaller one as 0.
+//
 // Each step never falls as v rises, tables included, so the output never rises with v.
 class ExactCore final : public UnitCore {
  public:
   explicit ExactCore(const UnitConfig& config) : f_(config.cosine_bits), w_(config.output_bits) {
     wide_ = w_ > 8;
-    log_bits_ = w_ + 12;  // e = 1000 leaves 2^-(w + 2) of e u
+    log_bits_ = wide_ ? w_ + 12 : std::max(w_ + 11, f_);  // e = 1000 leaves 2^-(w + 2) or 2^-(w + 1) of e u
     fraction_bits_ = w_ + 2;
     mantissa_bits_ = w_ + 3;
-    log_index_bits_ = w_ > 10 ? 9 : 8;
+    log_index_bits_ = w_ > 10 ? 9 : w_ > 8 ? 8 : 7;
     slope_bits_ = log_bits_ - 1 - log_index_bits_;
     exp_index_bits_ = w_ > 10 ? 6 : w_ > 8 ? 5 : 4;
-    fill_log_table(config.coefficient_bits);
+    fill_log_table();
     fill_exp_table();
   }
 
   std::uint32_t value(std::uint32_t exponent, std::uint64_t, std::uint64_t v) const noexcept override {
-    // c = 2^-octave (1 - r): leading ones of v off the front, eight, four, two and one at a time
+    // c = 2^-octave (1 - r): leading ones of v off the front, eight, four, two and one at a time. Three octave bits
+    // serve 8-bit outputs: c below 2^-8 counts as the smallest c of octave 7, c below 2^-9 as 0.
+    if (!wide_ && ones(v, 9)) return 0;
     std::uint64_t octave = 0, r = v;
-    for (int shift = 8; shift > 0; shift /= 2)
-      if (r >> (f_ - shift) == power_of_two(shift) - 1) {
+    for (int shift = wide_ ? 8 : 4; shift > 0; shift /= 2) {
+      if (ones(r, shift)) {
         r = (r << shift) & (power_of_two(f_) - 1);
         octave += static_cast<std::uint64_t>(shift);
       }
+      if (shift == 4 && !wide_ && ones(v, 8)) r = power_of_two(f_) - 1;
+    }
 
     // u = -log2 c, then e u; 2^-(e u) by its whole part, a shift, and its fraction, a table
     r &= power_of_two(f_ - 1) - 1;
@@ -56,7 +65,7 @@ class ExactCore final : public UnitCore {
   std::vector<UnitParameter> parameters() const override {
     return {{"LogIndexBits", log_index_bits_},
             {"LogWordBits", log_word_bits_},
-            {"LogCoarseShift", coarse_shift_},
+            {"LogBits", log_bits_},
             {"LogSlopeBits", wide_ ? slope_bits_ + 1 : 0},
             {"ExpIndexBits", exp_index_bits_}};
   }
@@ -64,12 +73,18 @@ class ExactCore final : public UnitCore {
  private:
   int low_bits() const noexcept { return f_ - 1 - log_index_bits_; }  // of r within a table cell
 
-  // 1.44312 r without table (0.03 % above r / ln 2), or r itself where slopes do the rest.
+  /// The leading `count` bits of v, or of a remainder, are ones.
+  bool ones(std::uint64_t v, int count) const noexcept {
+    return v >> (f_ - count) == power_of_two(count) - 1;
+  }
+
+  // The part without table is r itself where slopes do the rest. Otherwise it is 2 r, and 1/128 of the low bits of r
+  // within a cell, and 72/128 of their distance from the largest value.
   std::uint64_t linear(std::uint64_t r) const noexcept {
     const std::uint64_t x = r << (log_bits_ - f_);
     if (wide_) return x;
-    const std::uint64_t t = (23 * x) >> 4;
-    return t + (t >> 9 << 1);  // 257/256
+    const std::uint64_t largest = power_of_two(low_bits()) - 1, low = r & largest;
+    return 2 * x + (((72 * (largest - low) + low) << (log_bits_ - f_)) >> 7);
   }
 
   // -log2(1 - r) in steps of 2^-log_bits_.
@@ -77,20 +92,17 @@ class ExactCore final : public UnitCore {
     const std::size_t i = r >> low_bits();
     const std::uint64_t rest = r & (power_of_two(low_bits()) - 1);
     const std::uint64_t slope = wide_ ? (log_slope_[i] * (rest << (log_bits_ - f_))) >> slope_bits_ : 0;
-    return linear(r) + log_start_[i] + slope;
+    return linear(r) + log_start_[i] + slope;  // modulo 2^64: starts of 8 bits are negative
   }
   double true_log(std::uint64_t r) const {
     return -std::ldexp(std::log1p(-std::ldexp(static_cast<double>(r), -f_)) / std::log(2.0), log_bits_);
   }
 
-  void fill_log_table(int coefficient_bits) {
+  void fill_log_table() {
     const std::size_t cells = power_of_two(log_index_bits_);
     log_start_.assign(cells, 0);
     log_slope_.assign(cells, 0);
-    // Words of 16 bits hold the lower half of the table; the upper half is coarser by 3 bits and serves small
-    // exponents only.
-    const int finest = log_bits_ - 2;  // bits of the largest entry, 0.279
-    coarse_shift_ = wide_ ? 0 : std::max(0, finest + 1 - coefficient_bits);
+    const int finest = log_bits_ - 2;                         // bits of the largest entry, 0.279
     const std::uint64_t limit = power_of_two(log_bits_) - 1;  // u - k stays below 1
     for (std::size_t i = 0; i < cells; ++i) {
       const std::uint64_t first = std::uint64_t{i} << low_bits(), last = first + power_of_two(low_bits()) - 1;
@@ -106,23 +118,26 @@ class ExactCore final : public UnitCore {
       double least = HUGE_VAL, largest = -HUGE_VAL;
       const std::uint64_t step = std::max<std::uint64_t>(1, (last - first) / 64);
       for (std::uint64_t r = first;; r = std::min(r + step, last)) {
-        const double off = true_log(r) - static_cast<double>(log_of(r));
+        const double off = true_log(r) - static_cast<double>(static_cast<std::int64_t>(log_of(r)));
         least = std::min(least, off);
         largest = std::max(largest, off);
         if (r == last) break;
       }
 
-      // rounded; not below the cell before it, and below 1 at its end
-      const int shift = i >= cells / 2 ? coarse_shift_ : 0;
-      const double middle = i == 0 && wide_ ? 0 : std::max(0.0, (least + largest) / 2);
-      std::uint64_t word = static_cast<std::uint64_t>(std::llround(std::ldexp(middle, -shift)));
-      const auto joins = [&] { return i == 0 || linear(first) + (word << shift) >= log_of(first - 1); };
-      while (!joins()) ++word;
-      log_start_[i] = word << shift;
-      while (log_of(last) > limit) log_start_[i] = --word << shift;
-      log_words_.push_back(wide_ ? word << (slope_bits_ + 1) | log_slope_[i] : word);
+      // rounded; not below the cell before it, not below 0, and below 1 at its end
+      const int drop = wide_ ? 0 : log_bits_ - (w_ + 11);
+      const double middle = i == 0 && wide_ ? 0 : (least + largest) / 2;
+      auto word =
+          static_cast<std::int64_t>(std::llround(std::ldexp(wide_ ? std::max(0.0, middle) : middle, -drop)));
+      const auto answer = [&](std::uint64_t r) { return static_cast<std::int64_t>(log_of(r)); };
+      const auto set = [&] { log_start_[i] = static_cast<std::uint64_t>(word) << drop; };
+      set();
+      while (answer(first) < (i == 0 ? 0 : answer(first - 1))) ++word, set();
+      while (answer(last) > static_cast<std::int64_t>(limit)) --word, set();
+      log_words_.push_back(wide_ ? log_start_[i] << (slope_bits_ + 1) | log_slope_[i]
+                                 : static_cast<std::uint64_t>(word) & (power_of_two(w_ + 8) - 1));
     }
-    log_word_bits_ = wide_ ? finest + 1 + slope_bits_ + 1 : coefficient_bits;
+    log_word_bits_ = wide_ ? finest + 1 + slope_bits_ + 1 : w_ + 8;
   }
 
   int rest_bits() const noexcept { return fraction_bits_ - exp_index_bits_; }
@@ -174,7 +189,7 @@ class ExactCore final : public UnitCore {
   int log_bits_;       // fraction bits of u
   int fraction_bits_;  // fraction bits of e u
   int mantissa_bits_;  // fraction bits of the power of two
-  int log_index_bits_, slope_bits_, exp_index_bits_, coarse_shift_ = 0, log_word_bits_ = 0;
+  int log_index_bits_, slope_bits_, exp_index_bits_, log_word_bits_ = 0;
   std::vector<std::uint64_t> log_start_, log_slope_, log_words_, exp_start_, exp_slope_;
 };
 

@@ -110,7 +110,7 @@ TEST(FixedPoint, InputsAboveOneCountAsOne) {
 }
 
 TEST(FixedPoint, DepthChangesNoValue) {
-  const SpecularUnit shallow({.depth = 3}), deep({.depth = 15});
+  const SpecularUnit shallow({.depth = 3}), deep({.depth = 20});
   EXPECT_EQ(shallow.config().depth, 3);
   EXPECT_EQ(deep.value(123, 32000), shallow.value(123, 32000));
 }
@@ -135,7 +135,7 @@ TEST(FixedPoint, FieldsOutsideTheirDomainThrow) {
   EXPECT_THROW(SpecularUnit({.cosine_bits = 11}), Error);
   EXPECT_THROW(SpecularUnit({.cosine_bits = 21}), Error);
   EXPECT_THROW(SpecularUnit({.depth = 2}), Error);
-  EXPECT_THROW(SpecularUnit({.depth = 16}), Error);
+  EXPECT_THROW(SpecularUnit({.depth = 21}), Error);
   EXPECT_THROW(SpecularUnit({.coefficient_bits = 12}), Error);
   EXPECT_THROW(SpecularUnit({.method = UnitMethod::paper, .coefficient_bits = 11}), Error);
   EXPECT_THROW(SpecularUnit({.method = UnitMethod::paper, .cosine_bits = 25}), Error);
