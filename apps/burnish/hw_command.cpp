@@ -61,7 +61,9 @@ SpecularUnit make_unit(const UnitArguments& arguments) {
 }
 
 std::vector<GeneratedFile> generate(const std::vector<SpecularUnit>& units,
-                                    const std::vector<std::string>& names, int vectors, bool blinn) {
+                                    const std::vector<std::string>& names, int vectors, bool blinn,
+                                    bool axis) {
+  if (axis) return generate_axis(units[0], names[0], vectors);
   if (blinn) return generate_blinn(units[0], names[0], vectors);
   std::vector<GeneratedFile> files;
   for (std::size_t i = 0; i < units.size(); ++i)
@@ -79,7 +81,7 @@ void add_generate(CLI::App& verb) {
   struct Arguments {
     std::string name, out;
     int vectors = 2000;
-    bool all = false, blinn = false, json = false;
+    bool all = false, blinn = false, axis = false, json = false;
   };
   auto unit_arguments = add_unit_options(*sub);
   auto arguments = std::make_shared<Arguments>();
@@ -91,6 +93,12 @@ void add_generate(CLI::App& verb) {
                 "Writes every configuration of hw/, and a module `bench` around them.");
   sub->add_flag("--blinn", arguments->blinn,
                 "Adds Blinn's front end, which takes vectors, to --method exact --input versine.");
+  CLI::Option* blinn = sub->get_option("--blinn");
+  CLI::Option* all = sub->get_option("--all");
+  sub->add_flag("--axis", arguments->axis,
+                "Puts --method exact between two AXI4-Streams, and writes an IP-XACT description.")
+      ->excludes(blinn)
+      ->excludes(all);
   sub->add_option("-o,--output,--out", arguments->out,
                   "Names the folder to write to, which is made where it is missing.")
       ->required();
@@ -109,7 +117,8 @@ void add_generate(CLI::App& verb) {
       names.push_back(arguments->name.empty() ? kind : arguments->name);
       units.push_back(make_unit(*unit_arguments));
     }
-    const auto files = usage([&] { return generate(units, names, arguments->vectors, arguments->blinn); });
+    const auto files =
+        usage([&] { return generate(units, names, arguments->vectors, arguments->blinn, arguments->axis); });
     make_folder(arguments->out);
     for (const GeneratedFile& file : files) {
       write_then_rename(std::filesystem::path(arguments->out) / file.name, file.text);

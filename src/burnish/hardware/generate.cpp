@@ -27,10 +27,10 @@ constexpr UnitConfig pipelined(UnitMethod method, int depth) {
 
 const std::array kShipped = {
     ShippedUnit{"exact_8", {.depth = 6}},
-    ShippedUnit{"exact_8_pipelined", pipelined(exact, 15)},
+    ShippedUnit{"exact_8_pipelined", pipelined(exact, 17)},
     ShippedUnit{"exact_8_versine", {.input = UnitInput::versine, .cosine_bits = 20, .depth = 6}},
     ShippedUnit{"exact_10", {.output_bits = 10}},
-    ShippedUnit{"exact_12", {.output_bits = 12, .depth = 15}},
+    ShippedUnit{"exact_12", {.output_bits = 12, .depth = 20}},
     ShippedUnit{"paper_literal", {.method = paper_literal}},
     ShippedUnit{"paper_literal_pipelined", pipelined(paper_literal, 8)},
     ShippedUnit{"paper", {.method = paper}},
@@ -41,10 +41,12 @@ const std::array kShipped = {
     ShippedUnit{"two_piece_pipelined", pipelined(two_piece, 9)},
     ShippedUnit{"schlick", {.method = schlick}},
     ShippedUnit{"schlick_pipelined", pipelined(schlick, 13)},
+    ShippedUnit{"quadratics_8", {.method = quadratics, .depth = 6}},
+    ShippedUnit{"quadratics_12", {.method = quadratics, .output_bits = 12, .depth = 16}},
 };
 
 bool has_coefficients(UnitMethod method) {
-  return method != exact && method != schlick;
+  return method != exact && method != schlick && method != quadratics;
 }
 
 std::string hex_words(const UnitTable& table) {
@@ -220,6 +222,145 @@ std::uint64_t packed(const FixedVec3& v) {
   return word;
 }
 
+// A port of the streams' wrapper, and the AXI4-Stream signal that it is.
+struct StreamPort {
+  std::string name;
+  bool out;
+  int width;
+  std::string signal;
+};
+
+int whole_bytes(int bits) {
+  return (bits + 7) / 8 * 8;
+}
+std::vector<StreamPort> stream_ports(const UnitConfig& c) {
+  return {{"aclk", false, 1, "ACLK"},
+          {"aresetn", false, 1, "ARESETn"},
+          {"s_axis_tvalid", false, 1, "TVALID"},
+          {"s_axis_tready", true, 1, "TREADY"},
+          {"s_axis_tdata", false, 16 + whole_bytes(c.cosine_bits + 1), "TDATA"},
+          {"s_axis_tlast", false, 1, "TLAST"},
+          {"s_axis_tuser", false, 1, "TUSER"},
+          {"m_axis_tvalid", true, 1, "TVALID"},
+          {"m_axis_tready", false, 1, "TREADY"},
+          {"m_axis_tdata", true, whole_bytes(c.output_bits), "TDATA"},
+          {"m_axis_tlast", true, 1, "TLAST"},
+          {"m_axis_tuser", true, 1, "TUSER"}};
+}
+
+std::string axis_wrapper(const SpecularUnit& unit, const std::string& name) {
+  const UnitConfig& c = unit.config();
+  std::string text = first_line("//", unit, " --axis"), ports, connected;
+  text += fmt::format(
+      "// {}: s_axis_tdata is the exponent in bits 9:0 and {} as Q1.{} from bit 16 on; m_axis_tdata the\n"
+      "// value times {}; {} clocks.\n",
+      unit_info(c.method).formula, c.input == UnitInput::versine ? "v = 1 - c" : "c", c.cosine_bits,
+      (1 << c.output_bits) - 1, c.depth + 1);
+  for (const StreamPort& port : stream_ports(c)) {
+    ports += fmt::format("{}  {:<6} logic {:<7}{}", ports.empty() ? "" : ",\n", port.out ? "output" : "input",
+                         port.width == 1 ? "" : fmt::format("[{}:0]", port.width - 1), port.name);
+    const bool breaks = port.name == "m_axis_tvalid";
+    connected += fmt::format("{}.{}", connected.empty() ? "" : breaks ? ",\n    " : ", ", port.name);
+  }
+  text += fmt::format("module {} (\n{}\n);\n", name, ports);
+  text += fmt::format("  burnish_exact_axis #(\n    .CosineBits({}), .OutBits({}), .Versine({}), .Depth({})",
+                      c.cosine_bits, c.output_bits, c.input == UnitInput::versine ? 1 : 0, c.depth);
+  return text + table_parameters(unit, name) +
+         fmt::format("\n  ) i_unit (\n    {}\n  );\nendmodule\n", connected);
+}
+
+// The component of IEEE 1685-2022 whose files are `files`, in the order in which they are compiled.
+std::string ip_xact(const SpecularUnit& unit, const std::string& name,
+                    const std::vector<std::string>& files) {
+  const std::vector<StreamPort> all = stream_ports(unit.config());
+  const auto stream = [&](std::string_view prefix, std::string_view role) {
+    std::string maps;
+    for (const StreamPort& port : all)
+      if (port.name.starts_with(prefix) || port.name.starts_with("a"))
+        maps += fmt::format(R"(            <ipxact:portMap>
+              <ipxact:logicalPort><ipxact:name>{}</ipxact:name></ipxact:logicalPort>
+              <ipxact:physicalPort><ipxact:name>{}</ipxact:name></ipxact:physicalPort>
+            </ipxact:portMap>
+)",
+                            port.signal, port.name);
+    return fmt::format(R"(    <ipxact:busInterface>
+      <ipxact:name>{}</ipxact:name>
+      <ipxact:busType vendor="amba.com" library="AMBA4" name="AXI4Stream" version="r0p0_1"/>
+      <ipxact:abstractionTypes>
+        <ipxact:abstractionType>
+          <ipxact:abstractionRef vendor="amba.com" library="AMBA4" name="AXI4Stream_rtl" version="r0p0_1"/>
+          <ipxact:portMaps>
+{}          </ipxact:portMaps>
+        </ipxact:abstractionType>
+      </ipxact:abstractionTypes>
+      <ipxact:{}/>
+    </ipxact:busInterface>
+)",
+                       prefix, maps, role);
+  };
+  std::string ports, listed;
+  for (const StreamPort& port : all) {
+    const std::string qualifier =
+        port.signal == "ACLK" ? "<ipxact:qualifier><ipxact:isClock>true</ipxact:isClock></ipxact:qualifier>"
+        : port.signal == "ARESETn"
+            ? "<ipxact:qualifier><ipxact:isReset level=\"low\">true</ipxact:isReset></ipxact:qualifier>"
+            : "";
+    const std::string vector = port.width == 1
+                                   ? ""
+                                   : fmt::format(
+                                         "<ipxact:vectors><ipxact:vector><ipxact:left>{}</ipxact:left>"
+                                         "<ipxact:right>0</ipxact:right></ipxact:vector></ipxact:vectors>",
+                                         port.width - 1);
+    ports += fmt::format(R"(      <ipxact:port>
+        <ipxact:name>{}</ipxact:name>
+        <ipxact:wire><ipxact:direction>{}</ipxact:direction>{}{}</ipxact:wire>
+      </ipxact:port>
+)",
+                         port.name, port.out ? "out" : "in", qualifier, vector);
+  }
+  for (const std::string& file : files)
+    listed += fmt::format(
+        "      "
+        "<ipxact:file><ipxact:name>{}</ipxact:name><ipxact:fileType{}</ipxact:fileType></ipxact:file>\n",
+        file, file.ends_with(".sv") ? ">systemVerilogSource" : " user=\"readmemh\">user");
+  return fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?>
+<ipxact:component xmlns:ipxact="http://www.accellera.org/XMLSchema/IPXACT/1685-2022">
+  <ipxact:vendor>burnish</ipxact:vendor>
+  <ipxact:library>specular</ipxact:library>
+  <ipxact:name>{}</ipxact:name>
+  <ipxact:version>1.0</ipxact:version>
+  <ipxact:description>{}, {} clocks, one result a clock</ipxact:description>
+  <ipxact:busInterfaces>
+{}{}  </ipxact:busInterfaces>
+  <ipxact:model>
+    <ipxact:views>
+      <ipxact:view>
+        <ipxact:name>rtl</ipxact:name>
+        <ipxact:componentInstantiationRef>rtl</ipxact:componentInstantiationRef>
+      </ipxact:view>
+    </ipxact:views>
+    <ipxact:instantiations>
+      <ipxact:componentInstantiation>
+        <ipxact:name>rtl</ipxact:name>
+        <ipxact:language>SystemVerilog</ipxact:language>
+        <ipxact:moduleName>{}</ipxact:moduleName>
+        <ipxact:fileSetRef><ipxact:localName>rtl</ipxact:localName></ipxact:fileSetRef>
+      </ipxact:componentInstantiation>
+    </ipxact:instantiations>
+    <ipxact:ports>
+{}    </ipxact:ports>
+  </ipxact:model>
+  <ipxact:fileSets>
+    <ipxact:fileSet>
+      <ipxact:name>rtl</ipxact:name>
+{}    </ipxact:fileSet>
+  </ipxact:fileSets>
+</ipxact:component>
+)",
+                     name, unit_info(unit.config().method).formula, unit.config().depth + 1,
+                     stream("s_axis", "target"), stream("m_axis", "initiator"), name, ports, listed);
+}
+
 // Modules the unit is made of, by the names that occur in their texts.
 std::vector<GeneratedFile> modules_below(const std::string& text) {
   // what is used uses others: until no more turn up
@@ -376,6 +517,23 @@ std::vector<GeneratedFile> generate_blinn(const SpecularUnit& unit, const std::s
   files.push_back({name + "_golden.mem", head + words});
   files.push_back(
       {name + "_tb.sv", test_bench(head, name, kBlinnInputs, unit.config().output_bits, golden.size())});
+  return files;
+}
+
+std::vector<GeneratedFile> generate_axis(const SpecularUnit& unit, const std::string& name, int vectors) {
+  check_name(name);
+  if (unit.config().method != exact) throw Error("AXI4-Stream: expected the exact unit");
+  const std::string head = first_line("//", unit, " --axis");
+  const std::vector<Port> inputs = unit_inputs(unit.config());
+  std::vector<GeneratedFile> files = surround(head, name, axis_wrapper(unit, name), unit.tables());
+  std::vector<std::string> named;
+  for (const GeneratedFile& file : files)
+    if (!file.name.ends_with(".f")) named.push_back(file.name);
+  std::string words;
+  for (const UnitVector& v : golden_vectors(unit, vectors))
+    words += hex(v.exponent, inputs[0].width) + hex(v.input, inputs[1].width) + hex(v.value, 16) + "\n";
+  files.push_back({name + "_golden.mem", head + words});
+  files.push_back({name + ".xml", ip_xact(unit, name, named)});
   return files;
 }
 

@@ -55,6 +55,12 @@ struct BlinnVector {
 /// the corners: equal directions, opposite ones, zero, backs and the largest words.
 std::vector<BlinnVector> blinn_vectors(const SpecularUnit& unit, int count, std::uint64_t seed = 1);
 
+/// The exact unit between two AXI4-Streams (hw/rtl/burnish_exact_axis.sv): module NAME, the modules below it, its table
+/// images, NAME.f, golden vectors, and NAME.xml, which describes ports, streams and files as an IP-XACT component
+/// (IEEE 1685-2022). Throws Error if `unit` is another unit.
+std::vector<GeneratedFile> generate_axis(const SpecularUnit& unit, const std::string& name,
+                                         int vectors = 2000);
+
 /// Module `bench`, all of `names` side by side with ports in arrays, for a test bench in C++.
 GeneratedFile generate_bench(std::span<const std::string> names, std::span<const SpecularUnit> units);
 

@@ -57,6 +57,23 @@ TEST(HardwareGenerate, GoldenVectorsHoldTheCornersAndBothInputs) {
   EXPECT_TRUE(seen.contains({1, 0}) && seen.contains({1023, 32768}) && seen.contains({64, 16384}));
 }
 
+TEST(HardwareGenerate, DescribesTheStreamsPortsAsIpXact) {
+  const SpecularUnit unit({.cosine_bits = 20, .output_bits = 10, .depth = 7});
+  const auto files = generate_axis(unit, "highlight", 100);
+  const std::string& module = find(files, "highlight.sv").text;
+  const std::string& description = find(files, "highlight.xml").text;
+  // 16 bits of exponent and 21 of c in whole bytes; 10 bits of value in two
+  EXPECT_THAT(module, HasSubstr("input  logic [39:0] s_axis_tdata"));
+  EXPECT_THAT(module, HasSubstr("output logic [15:0] m_axis_tdata"));
+  EXPECT_THAT(description, HasSubstr("<ipxact:left>39</ipxact:left>"));
+  EXPECT_THAT(description, HasSubstr("<ipxact:left>15</ipxact:left>"));
+  for (const GeneratedFile& file : files)
+    if (file.name.ends_with(".sv")) {
+      EXPECT_THAT(description, HasSubstr("<ipxact:name>" + file.name + "</ipxact:name>"));
+    }
+  EXPECT_THROW(generate_axis(SpecularUnit({.method = UnitMethod::w8}), "highlight"), Error);
+}
+
 TEST(HardwareGenerate, RefusesNamesThatAreNoIdentifiersAndUnitsThatDoNotFit) {
   EXPECT_THROW(generate_unit(SpecularUnit(UnitConfig{}), "a b"), Error);
   EXPECT_THROW(generate_unit(SpecularUnit(UnitConfig{}), "8bit"), Error);
