@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """damaged.py BURNISH FOLDER...: damaged files through the command line.
 
-Takes the files of the folders (seeds that build/fuzz/tests/fuzz/make_seeds writes, real measurements) and some that
-the program makes, damages them one by one in one of several ways and gives each to a verb that reads such files. The program has to end with 0 or 1,
-with 1 to say one line besides warnings (which names the file, unless a fit failed) and to leave nothing behind, with 0 to have written what it was to write, all
-below 1 GB and within 5 s of the processor. Whatever does not is told, kept in --keep, and the end is 1.
+Takes the files of the folders (seeds that make_seeds writes, real measurements) and some that the program makes. It
+damages them one by one in one of several ways, and gives each to a verb that reads such files. The program has to end
+with 0 or 1. With 1 it says one line besides warnings, which names the file unless a fit failed, and leaves nothing
+behind. With 0 it has written what it was to write. All of it takes below 1 GB and 5 s of the processor. Whatever does not is told, kept in --keep, and the end is 1.
 """
 import argparse
 import collections
@@ -39,11 +39,15 @@ MADE = (["convert", "ggx:alpha_x=0.3", "made.binary", "--cells", "6"], ["convert
         ["convert", "ggx", "made.bin", "--to", "utia"], ["convert", "lambert", "zemax", "--to", "zemax"],
         ["convert", "ggx", "made.xml", "--cells", "8"], ["measure", "ggx", "-o", "cloud.csv", "--count", "99"],
         ["convert", "cloud.csv", "made.xompt"], ["convert", "ggx", "made.astm", "--count", "99"],
-        ["convert", "ggx", "made.csv", "--count", "99"], ["fit", "ggx", "-o", "made.exr", "--budget", "1350"],
+        ["convert", "ggx", "made.csv", "--count", "99"], ["convert", "ggx", "slices.exr", "--to", "exr"], ["fit", "ggx", "-o", "made.exr", "--budget", "1350"],
         ["convert", "made.exr", "made.burnish"], ["fit", "ggx", "-o", "nmf.json", "--method", "nmf"],
         ["fit", "ggx", "-o", "svd.json", "--method", "svd"], ["fit", "ggx", "-o", "openpbr.json", "--to", "openpbr", "--alone"],
         ["render", "--renderer", "cpu", "--material", "lambert", "--size", "16x8", "-o", "environment.exr"],
         ["export", "made.exr", "--to", "gltf", "-o", "."])
+# Options for reading, which files of other formats pass over or refuse.
+READ_OPTIONS = ["--brf", "--has-cosine", "--has-cosine-o", "--spectral", "--scale-to-tis", "--back", "--keep-negatives",
+                *(f"--part={side}-{face}" for side in ("reflection", "transmission") for face in ("front", "back")),
+                *(f"--band={band}" for band in ("Visible", "Solar", "CIE-XYZ", "CIE-X"))]
 TRIANGLES = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\nf 1 3 4\n"
 
 
@@ -115,15 +119,16 @@ def command_for(kind, path, out, rng):
     if kind in SPECS and rng.random() < 0.5:
         path = SPECS[kind].format(path)
     verb = rng.randrange(100)
+    reading = [rng.choice(READ_OPTIONS)] if rng.random() < 0.3 else []
     if os.path.basename(path) in MODELS and verb % 10 == 0:
         return ["compare", "lambert", path, "--count", "20"], None
     if os.path.basename(path) in MODELS and verb % 10 == 1:
         return ["export", path, "--to", "glsl", "-o", out], out
     if verb < 60:
-        return ["info", path] + rng.choice(([], ["--json"], ["--illuminant", "D65"])), None
+        return ["info", path] + reading + rng.choice(([], ["--json"], ["--illuminant", "D65"])), None
     if verb < 85:
         to = rng.choice(("csv", "csv", "astm", "openmaterial", "mbsdf", "tensortree", "burnish"))
-        return ["convert", path, out, "--to", to] + (["--count", "20"] if to in ("csv", "astm") else ["--cells", "4"] if to == "mbsdf" else []), out
+        return ["convert", path, out, "--to", to] + reading + (["--count", "20"] if to in ("csv", "astm") else ["--cells", "4"] if to == "mbsdf" else []), out
     if verb < 95:
         return ["measure", path, "-o", out, "--count", "20"], out
     return ["fit", path, "-o", out + ".json", "--method", rng.choice(("analytic:ggx", "nmf", "svd"))], out + ".json"
@@ -161,22 +166,27 @@ class Runner:
 
 def fault_of(verb, outcome, path, written):
     status, said, seconds, most = outcome
+    if status == 2 and any(f"{option}: expected a source" in said for option in ("--count", "--cells")):
+        return None  # the entries are written as they are, so the option means nothing
     if status not in (0, 1):
         return f"ended with {status}"
     if seconds > MOST_SECONDS:
         return f"took {seconds:.1f} s"
     if most > MOST_BYTES:
         return f"took {most >> 20} MiB"
-    longest = LONGEST_ERROR if status == 1 else LONGEST_LINE
-    # warnings of a reader come before, a line each
-    lines = said.splitlines(keepends=True)
+    # Warnings of a reader come first, a line each. A conversion adds a line of what is lost and one of what changed.
+    lines = said.splitlines()
+    if any(not line.startswith("burnish: ") for line in lines):
+        return "said more than a line"
     if any(": warning: " in line and len(line) > LONGEST_LINE + len(path) for line in lines):
         return "warned at length"
-    said = "".join(line for line in lines if ": warning: " not in line)
-    if said.count("\n") > 1 or any(len(line) > longest for line in said.splitlines()):
+    lines = [line for line in lines if ": warning: " not in line]
+    if len(lines) > (1 if status == 1 else 2) or any(len(line) > (LONGEST_ERROR if status == 1 else LONGEST_LINE)
+                                                     for line in lines):
         return "said more than a line"
-    if status == 1 and not said.startswith("burnish: "):
+    if status == 1 and not lines:
         return "said nothing"
+    said = "".join(lines)
     if status == 1 and verb in READS and os.path.dirname(path) not in said:
         return "said nothing of the file"
     if written and os.path.exists(written) != (status == 0):

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -40,7 +41,7 @@ void check(const T& table) {
 }
 
 /// Checks that any bytes either throw Error or make a source with sound values. Another exception ends the run. The
-/// size picks the options.
+/// size picks the options, part and band among them.
 template <class Parse>
 int fuzz(const std::uint8_t* data, std::size_t size, const Parse& parse) {
   const auto* bytes = reinterpret_cast<const std::byte*>(data);
@@ -52,6 +53,10 @@ int fuzz(const std::uint8_t* data, std::size_t size, const Parse& parse) {
   options.brf = size % 5 == 2;
   options.back_side = size % 7 == 0;
   options.illuminant = size % 11 == 0 ? "D65" : "E";
+  constexpr std::array kBands{"", "", "visible", "Solar", "CIE-XYZ", "CIE-Z"};
+  if (size % 3 == 0) options.part = kBsdfParts[size / 3 % kBsdfParts.size()];
+  options.band = kBands[size / 12 % kBands.size()];
+  options.scale_to_tis = size % 13 == 0;
   try {
     parse(file, options);
   } catch (const Error&) {

@@ -4,7 +4,7 @@
 #include "fuzz_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return burnish::fuzz(data, size, [](const burnish::FileBytes& file, const burnish::OpenOptions&) {
-    burnish::check(burnish::parse_mbsdf(file).table);
+  return burnish::fuzz(data, size, [](const burnish::FileBytes& file, const burnish::OpenOptions& options) {
+    burnish::check(burnish::parse_mbsdf(file, options).table);
   });
 }

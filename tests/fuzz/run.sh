@@ -8,7 +8,7 @@ seconds=${1:-60}
 cd "$(dirname "$0")/../.."
 if [ -z "${BUILT:-}" ]; then
   cmake --preset fuzz > /dev/null
-  cmake --build --preset fuzz
+  cmake --build --preset fuzz -j "${JOBS:-$(nproc)}"
 fi
 export build=${BUILT:-build/fuzz/tests/fuzz} corpus=build/fuzz/corpus seconds
 mkdir -p build/fuzz/finds
