@@ -18,19 +18,14 @@
 
 #include <burnish/error.h>
 #include <burnish/export/export_model.h>
+#include <burnish/export/export_openpbr.h>
 #include <burnish/export/export_surface.h>
-#include <burnish/export/gltf_binary.h>
-#include <burnish/export/materialx.h>
-#include <burnish/export/nearest_material.h>
-#include <burnish/export/usda.h>
 #include <burnish/factors/compact_file.h>
 #include <burnish/factors/edit.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/fit.h>
 #include <burnish/fitting/fit_file.h>
 #include <burnish/fitting/fit_request.h>
-#include <burnish/fitting/parametric/gltf_json.h>
-#include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/io/convert.h>
 #include <burnish/io/open_source.h>
 #include <burnish/io/text_reader.h>
@@ -555,23 +550,6 @@ Reply export_surface_of(const SurfaceModel& surface, const std::string& kind, co
       surface.brdf, {.to = {export_target(kind)}, .name = export_name(name), .compressed = false}));
 }
 
-// Returns those files of export_openpbr that hold inputs. Shaders and pages would make the package larger than its
-// limit.
-std::vector<std::pair<std::string, std::string>> openpbr_files(const AnalyticBrdf& brdf,
-                                                               const std::string& kind,
-                                                               const std::string& name) {
-  const OpenPbrParameters& parameters = std::get<OpenPbr>(brdf.variant()).parameters();
-  if (kind == "materialx") {
-    ExportedFile file = materialx_file(parameters, name);
-    return {{std::move(file.name), std::move(file.bytes)}};
-  }
-  if (kind == "usda")
-    return {{name + ".usda", usda_layer(parameters, fit_metallic_roughness(brdf).material, name)}};
-  if (kind == "gltf") return {{name + ".glb", gltf_binary(gltf_json(nearest_gltf(brdf).material), name)}};
-  throw Error(
-      fmt::format("export: expected materialx, usda or gltf of openpbr, found '{}'; a fit has more", kind));
-}
-
 // Writes a format of the verb convert, or a target of the verb export.
 Reply export_material(const Request& request) {
   const Json& a = request.arguments;
@@ -606,7 +584,7 @@ Reply export_material(const Request& request) {
   // OpenPBR is exported by its formulas, without a fit.
   if (const auto* const brdf = std::get_if<AnalyticBrdf>(&source.brdf);
       brdf && brdf->model().name == "openpbr")
-    return reply_of(openpbr_files(*brdf, kind, name), Json::array());
+    return reply_of(export_openpbr(*brdf, options));
   return reply_of(export_model(model_of(a), options));
 }
 

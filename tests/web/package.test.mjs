@@ -378,7 +378,9 @@ test("Shaders, exports and volumes have what they say", async () => {
 });
 
 test("OpenPBR is exported by its formulas, as `export` does", async (t) => {
-  const spec = "openpbr:base_color=0.6/0.3/0.1,specular_roughness=0.3,coat_weight=1", kinds = {materialx: "mtlx", usda: "usda"};
+  const spec = "openpbr:base_color=0.6/0.3/0.1,specular_roughness=0.3,coat_weight=1", kinds = {
+    materialx: "mtlx", usda: "usda", three: "three.js", babylon: "babylon.js", html: "html",
+    glsl: "glsl", glsl_es: "es.glsl", hlsl: "hlsl", slang: "slang", wgsl: "wgsl", msl: "metal", cpp: "h"};
   const material = await open(spec);
   t.after(() => material.close());
   await run("export", spec, ...Object.keys(kinds).flatMap((kind) => ["--to", kind]), "--name", "paint", "-o", at("openpbr"));
@@ -389,6 +391,32 @@ test("OpenPBR is exported by its formulas, as `export` does", async (t) => {
   }
   assert.ok((await material.export("gltf", {name: "paint"})).some(({name}) => name === "paint.glb"));
   await assert.rejects(material.export("ktx2"), /expected/);
+});
+
+// Returns OpenPBR's inputs in a USD layer: numbers and lists of numbers by their names.
+function inputsOf(usda) {
+  const shader = usda.slice(usda.indexOf('def Shader "openpbr"')), found = {};
+  for (const [, name, value] of shader.matchAll(/inputs:(\w+) = (\([^)]*\)|[-+.\de]+)$/gm))
+    found[name] = value.startsWith("(") ? value.slice(1, -1).split(",").map(Number) : Number(value);
+  return found;
+}
+
+test("The same paint has the same OpenPBR by fit, by export and by the package", async (t) => {
+  const model = await open(bytesOf(at("a.burnish")), {name: "paint"});
+  t.after(() => model.close());
+  await run("fit", at("a.burnish"), "--to", "openpbr", "--alone", "-o", at("paint.json"));
+  const {parameters} = JSON.parse(fs.readFileSync(at("paint.json"), "utf8"));
+  await run("export", at("a.burnish"), "--to", "usda", "--name", "paint", "-o", at("exported"));
+  const exported = inputsOf(fs.readFileSync(at("exported/paint.usda"), "utf8")), names = Object.keys(exported);
+  assert.ok(names.length > 15 && names.every((name) => name in parameters), names.join());
+  for (const name of names) assert.deepEqual(exported[name], parameters[name], name);
+  const files = await model.export("usda", {name: "paint"}), {bytes} = files.find(({name}) => name === "paint.usda");
+  const found = inputsOf(Buffer.from(bytes).toString());
+  assert.deepEqual(Object.keys(found), names);
+  // Floats of the processors differ by rounding, which least squares may magnify.
+  for (const name of names)
+    for (const [i, expected] of [exported[name]].flat().entries())
+      assert.ok(Math.abs([found[name]].flat()[i] - expected) < 0.01, `${name}: ${found[name]} instead of ${exported[name]}`);
 });
 
 test("Memory of closed materials is used again", async () => {

@@ -114,8 +114,8 @@ export interface ExportOptions {
  * slices. */
 export type FileKind = "burnish" | "model" | "exr" | "merl" | "utia" | "rgl" | "mbsdf" | "zemax" | "tensortree" | "openmaterial" |
   "astm" | "csv";
-/** Exports of several files: for models those of the verb `export`; for surfaces ktx2, dds, png, gltf, three, html and
- * languages. */
+/** Exports of several files: for models those of the verb `export`; for OpenPBR all that need no tables; for surfaces
+ * ktx2, dds, png, gltf, three, html and languages. */
 export type FilesKind = "ktx2" | "dds" | "cube" | "png" | "gltf" | "materialx" | "usda" | "mdl" | "three" | "babylon" | "html" | Language;
 export interface NamedFile { name: string; bytes: Uint8Array; }
 

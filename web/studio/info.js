@@ -23,10 +23,11 @@ function surfaceFacts(info) {
           ["Albedo", `${number(info.albedo.mean, 3)} on average, at most ${number(info.albedo.largest, 3)}`], ["Size", bytesText(info.bytes)]];
 }
 
-function facts(info, {drawn, computed, material}) {
+function facts(info, {drawn, computed, material, spec}) {
   if (info.width) return surfaceFacts(info);
   const rows = [["Format", info.format]];
-  if (info.description) rows.push(["Description", info.description]);
+  // Sliders show the parameters of an analytic model.
+  if (info.description) rows.push(["Description", spec ? info.description.split(`: ${spec}:`)[0] : info.description]);
   const waves = info.lambda_nm?.length ? `, ${number(info.lambda_nm[0])} to ${number(info.lambda_nm.at(-1))} nm` : "";
   rows.push(["Channels", `${info.channels}${waves}${info.illuminant ? `, under ${info.illuminant}` : ""}`]);
   rows.push(["Material", info.isotropic ? "isotropic" : "anisotropic"]);

@@ -9,8 +9,8 @@ import {zip} from "./zip.js";
 const languages = {glsl: "GLSL 4.50", glsl_es: "GLSL ES 3.00", hlsl: "HLSL", slang: "Slang", wgsl: "WGSL", msl: "Metal", cpp: "C++"};
 const modelFiles = {burnish: ".burnish", model: "OpenEXR", ktx2: "KTX2 textures", three: "three.js", babylon: "Babylon.js", html: "Page", gltf: "glTF",
                     materialx: "MaterialX", usda: "USD", mdl: "MDL"};
-// Formats of OpenPBR's inputs, without a fit.
-const openPbrFiles = {materialx: "MaterialX", usda: "USD", gltf: "glTF"};
+// What OpenPBR goes to without a fit, besides shaders.
+const openPbrFiles = {materialx: "MaterialX", usda: "USD", gltf: "glTF", three: "three.js", babylon: "Babylon.js", html: "Page"};
 const surfaceFiles = {burnish: ".burnish", ktx2: "KTX2 textures", png: "PNG maps", three: "three.js", html: "Page", gltf: "glTF"};
 // Formats of any material, and the endings of names.
 const anyFiles = {merl: "MERL", utia: "UTIA", rgl: "RGL", mbsdf: "MBSDF", zemax: "Zemax", tensortree: "Tensor tree", openmaterial: "OpenMATERIAL",
@@ -31,7 +31,9 @@ function stem(entry) {
 async function filesOf(entry, kind, signal) {
   const onLosses = (losses) => say(pageWords(`${entry.name} as ${kind}: lost: ${losses.join("; ")}`));
   const made = await entry.material.export(kind, {name: stem(entry)}, {signal, onLosses});
-  return Array.isArray(made) ? made : [{name: `${stem(entry)}.${kExtensions[kind] ?? kind}`, bytes: made}];
+  if (!Array.isArray(made)) return [{name: `${stem(entry)}.${kExtensions[kind] ?? kind}`, bytes: made}];
+  // OpenPBR has no textures, which a manifest would tell of.
+  return entry.spec === "openpbr" ? made.filter(({name}) => !name.endsWith(".json")) : made;
 }
 
 // Runs a button's task with a signal that ends it.
@@ -67,10 +69,18 @@ async function copy(text, what) {
   }
 }
 
+// Returns the shader of a model, or of OpenPBR by its formulas.
+async function codeOf(entry, call) {
+  const options = {name: stem(entry)};
+  if (entry.spec !== "openpbr") return (await entry.material.shader(language, options, call)).code;
+  const [{bytes}] = await entry.material.export(language, options, call);
+  return new TextDecoder().decode(bytes);
+}
+
 function shaderGroup(entry) {
   const text = make("pre", {tabindex: 0, role: "region", "aria-label": "Shader", hidden: !textOpen});
   const fill = async () => {
-    if (textOpen) text.textContent = (await entry.material.shader(language, {name: stem(entry)})).code;
+    if (textOpen) text.textContent = await codeOf(entry);
   };
   const select = make("select", {"aria-label": "Language", onchange: () => {
     language = select.value;
@@ -88,9 +98,9 @@ function shaderGroup(entry) {
   fill().catch(sayError);
   return make("div", {}, make("h3", {}, `Shader of ${entry.name}`),
     make("div", {class: "buttons"}, select, toggle,
-      make("button", {type: "button", onclick: guarded(async (signal) => copy((await entry.material.shader(language, {name: stem(entry)}, {signal})).code, "Shader"))}, "Copy"),
+      make("button", {type: "button", onclick: guarded(async (signal) => copy(await codeOf(entry, {signal}), "Shader"))}, "Copy"),
       make("button", {type: "button", "data-export": "shader", onclick: guarded(async (signal) => {
-        saveFile(`${stem(entry)}.${extension[language]}`, (await entry.material.shader(language, {name: stem(entry)}, {signal})).code, "text/plain");
+        saveFile(`${stem(entry)}.${extension[language]}`, await codeOf(entry, {signal}), "text/plain");
       })}, "Save")), text);
 }
 
@@ -179,10 +189,10 @@ function draw() {
   }
   const surface = isSurface(model), files = surface ? surfaceFiles : modelFiles, apart = [state.shown, state.beside].filter((entry) => entry && !isSurface(entry));
   replaceKeepingFocus(place,
-    model ? shaderGroup(model) : make("p", {class: "hint"}, state.shown.spec === "openpbr" ? "Fit a model for a shader, textures and a link." : "Fit first: a model has a shader, textures and a link."),
+    model ? shaderGroup(model) : make("p", {class: "hint"}, state.shown.spec === "openpbr" ? "Fit a model for textures and a link." : "Fit first: a model has a shader, textures and a link."),
     model ? make("div", {}, make("h3", {}, surface ? "Surface" : "Model"), make("div", {class: "buttons"}, ...Object.entries(files).map(([kind, title]) => saveButton(model, kind, title)))) : "",
     model ? linkGroup(model) : "",
-    ...apart.filter(({spec}) => spec === "openpbr").map((each) => make("div", {"data-openpbr": each.id}, make("h3", {}, `OpenPBR of ${each.name}`),
+    ...apart.filter(({spec}) => spec === "openpbr").map((each) => make("div", {"data-openpbr": each.id}, shaderGroup(each), make("h3", {}, `OpenPBR of ${each.name}`),
       make("p", {class: "hint"}, "Exports the inputs that the sliders set; no fit is needed."),
       make("div", {class: "buttons"}, ...Object.entries(openPbrFiles).map(([kind, title]) => saveButton(each, kind, title))))),
     ...apart.map((each) =>

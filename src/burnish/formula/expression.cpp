@@ -52,6 +52,12 @@ Expr Expr::integer(int constant) {
                    .arguments = {}});
 }
 
+Expr::Expr(const Expr& x) = default;
+Expr::Expr(Expr&& x) noexcept = default;
+Expr& Expr::operator=(const Expr& x) = default;
+Expr& Expr::operator=(Expr&& x) noexcept = default;
+Expr::~Expr() = default;
+
 Expr Expr::input(std::string name, ValueType type) {
   return of_name(Op::input, type, std::move(name), {});
 }

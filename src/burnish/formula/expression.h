@@ -63,6 +63,12 @@ class Expr {
 
   Expr() : Expr(0.0) {}
   Expr(double constant);  // NOLINT: numbers are expressions
+  // These stand in expression.cpp, because formulas make hundreds of copies, which would be inlined.
+  Expr(const Expr& x);
+  Expr(Expr&& x) noexcept;
+  Expr& operator=(const Expr& x);
+  Expr& operator=(Expr&& x) noexcept;
+  ~Expr();
   static Expr integer(int constant);
   static Expr input(std::string name, ValueType type = ValueType::real);
   static Expr element(std::string array, const Expr& index, ValueType type);
