@@ -103,6 +103,8 @@ TEST(CommandLine, SaysWhatAnOptionTakes) {
         std::pair{"fit lambert --to openpbr -o x.csv", "--output: expected a name such as paint.json"},
         std::pair{"fit lambert --method svd -o x.gltf", "`burnish export --to gltf` writes a GLB"},
         std::pair{"fit lambert --to gltf -o x.glb", "`burnish export --to gltf` writes a GLB"},
+        std::pair{"fit lambert --to gltf -o x.glb", "expected a name such as paint.json or paint.gltf"},
+        std::pair{"fit lambert --to openpbr -o x.gltf", "`burnish export --to gltf` writes a GLB"},
         std::pair{"fit lambert --seed a", "--seed: expected a whole number of at least 0, found 'a'"},
         std::pair{"hw error --first 10 --last 5",
                   "--last: expected an exponent of at least --first, 10, found 5"},
@@ -218,6 +220,27 @@ TEST(CommandLine, PrintsNotesOfAFitAsLines) {
   for (const char* ending : {"glsl", "hlsl", "wgsl"})
     EXPECT_TRUE(std::filesystem::exists(fmt::format("{}/m.{}", out, ending)));
   EXPECT_EQ(burnish(fmt::format("export '{}' --to glsl,hlls -o '{}'", model, out)).status, 2);
+}
+
+TEST(CommandLine, SaysOfOneSampleWhatItKnows) {
+  const TemporaryFolder folder("one_sample");
+  const std::string file = (folder.path / "one.csv").string();
+  write_then_rename(file, "theta_i,phi_i,theta_o,phi_o,value\n30,0,45,180,0.2\n");
+  const std::string said = burnish(fmt::format("info '{}'", file)).output;
+  EXPECT_THAT(said, HasSubstr("\nnodes        1 measured at 1 incident angle\n"));
+  EXPECT_THAT(said, HasSubstr("\nalbedo       unknown at theta_i = 0 degrees\n"));
+}
+
+TEST(CommandLine, WritesNoNegativeZeroAndAnAssetOfGltf) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const TemporaryFolder folder("written");
+  const std::string patches = (folder.path / "patches.xml").string(), table = (folder.path / "t.csv").string();
+  ASSERT_EQ(burnish(fmt::format("convert lambert '{}' --cells 2", patches)).status, 0);
+  ASSERT_EQ(burnish(fmt::format("convert '{}' '{}'", patches, table)).status, 0);
+  EXPECT_THAT(std::string(read_file(table).text()), testing::Not(testing::ContainsRegex("(^|[,\n])-0[,\n]")));
+  const std::string asset = (folder.path / "m.gltf").string();
+  ASSERT_EQ(burnish(fmt::format("fit lambert --to gltf --alone -o '{}'", asset)).status, 0);
+  EXPECT_TRUE(nlohmann::json::parse(read_file(asset).text()).contains("materials"));
 }
 
 TEST(CommandLine, PrintsNotesOfAFitToSamplesAsLines) {

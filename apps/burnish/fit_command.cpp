@@ -59,8 +59,8 @@ void print(const LobesReport& report) {
     fmt::print("fetches    {} of {} to {} tried, within {:.0f} % of the least error\n",
                trial_at_knee(trials).fetches, trials.front().fetches, trials.back().fetches,
                100 * (kKneeFactor - 1));
-  fmt::print("fitted     {} samples, {} lobes, {} steps ({}){}\n", report.samples, report.lobes,
-             report.summary.iterations, ending_of(report.summary),
+  fmt::print("fitted     {} samples, {} lobe{}, {} steps ({}){}\n", report.samples, report.lobes,
+             report.lobes == 1 ? "" : "s", report.summary.iterations, ending_of(report.summary),
              report.smooth ? fmt::format(", smooth {:.3g}", *report.smooth) : "");
   if (report.search)
     fmt::print("searched   {} changes, {} kept\n", report.search->trials, report.search->kept.size());
@@ -250,14 +250,15 @@ void print(const Unexplained& beyond) {
                grain);
 }
 
-// Refuses an output name that ends otherwise than .json, since JSON is written.
+// Refuses an output name that ends otherwise than .json, since JSON is written. JSON of glTF may end in .gltf.
 void check_name_of_json(const FitCommand& arguments) {
   const std::string ending = std::filesystem::path(arguments.out).extension().string();
-  if (ending.empty() || ending == ".json") return;
-  const bool gltf = ending == ".glb" || ending == ".gltf";
+  const bool gltf = arguments.to == "gltf";
+  if (ending.empty() || ending == ".json" || (gltf && ending == ".gltf")) return;
   throw CLI::ValidationError(
-      fmt::format("--output: expected a name such as paint.json, for JSON is written{}, found '{}'",
-                  gltf ? " (`burnish export --to gltf` writes a GLB)" : "", arguments.out));
+      fmt::format("--output: expected a name such as paint.json{}, for JSON is written{}, found '{}'",
+                  gltf ? " or paint.gltf" : "",
+                  ending == ".glb" || ending == ".gltf" ? " (`burnish export --to gltf` writes a GLB)" : "", arguments.out));
 }
 
 void fit_to_material(const FitCommand& arguments) {

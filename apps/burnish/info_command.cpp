@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,9 +36,14 @@ namespace burnish::cli {
 
 namespace {
 
-std::string to_string(const NodesKnown& nodes) {
-  std::string text = fmt::format("{} measured", nodes.count);
-  if (nodes.incidences) text += fmt::format(" at {} incident angles", *nodes.incidences);
+std::string to_string(const NodesKnown& nodes, const Source& source) {
+  // Adaptive nodes of RGL that are no holes may lie at the horizon.
+  const std::uint64_t whole = source.findings.sample_count - source.findings.hole_count;
+  const bool some_below = std::holds_alternative<RglTable>(source.brdf) && whole > nodes.count;
+  std::string text = fmt::format("{} measured{}", nodes.count, some_below ? " above the horizon" : "");
+  if (nodes.incidences)
+    text += fmt::format(" at {} incident angle{}", *nodes.incidences, *nodes.incidences == 1 ? "" : "s");
+  if (some_below) text += fmt::format(", {} more at it or below", whole - nodes.count);
   if (nodes.predicted)
     text += fmt::format(", predicted from the others to relative {:.4f}, log_cos {:.4f}",
                         nodes.predicted->relative, nodes.predicted->log_cos);
@@ -73,7 +80,7 @@ void print_findings(const Source& source, const std::vector<std::string>& warnin
   print_line("coverage", fmt::format("theta_i {:.1f} to {:.1f}, theta_o {:.1f} to {:.1f} degrees",
                                      degrees(findings.theta_i_min), degrees(findings.theta_i_max),
                                      degrees(findings.theta_o_min), degrees(findings.theta_o_max)));
-  if (nodes) print_line("nodes", to_string(*nodes));
+  if (nodes) print_line("nodes", to_string(*nodes, source));
   if (findings.negative_count > 0)
     print_line("negatives", fmt::format("{} values below zero, down to {:.3g} 1/sr", findings.negative_count,
                                         findings.most_negative));
@@ -112,11 +119,15 @@ void print_text(const SourceReport& report, const std::optional<NodesKnown>& nod
   print_findings(source, warnings, nodes);
   for (const auto& [theta_i, phi_i, albedo] : albedos)
     print_line(source.findings.transmits() ? "transmitted" : "albedo",
-               fmt::format("{} at theta_i = {:.0f}{} degrees{}{}", fmt::join(shown(albedo.albedo), " "),
+               fmt::format("{} at theta_i = {:.0f}{} degrees{}{}",
+                           albedo.unknown_fraction < 1
+                               ? fmt::format("{}", fmt::join(shown(albedo.albedo), " "))
+                               : std::string("unknown"),
                            degrees(theta_i), phi_i > 0 ? fmt::format(", phi_i = {:.0f}", degrees(phi_i)) : "",
-                           albedo.unknown_fraction > 0 ? fmt::format(", {:.1f} % of the hemisphere unknown",
-                                                                     100 * albedo.unknown_fraction)
-                                                       : "",
+                           albedo.unknown_fraction > 0 && albedo.unknown_fraction < 1
+                               ? fmt::format(", {:.1f} % of the hemisphere unknown",
+                                             100 * albedo.unknown_fraction)
+                               : "",
                            added_light(albedo)));
   print_line(
       "reciprocity",

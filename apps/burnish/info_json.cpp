@@ -20,7 +20,7 @@ std::optional<NodesKnown> nodes_of(const Source& source) {
   const auto [count, incidences] = count_nodes(source);
   NodesKnown known{.count = count, .incidences = {}, .predicted = {}};
   if (incidences <= kFewIncidences) known.incidences = incidences;
-  if (source.ref().isotropic() && count <= kManyNodes) {
+  if (source.ref().isotropic() && count > 1 && count <= kManyNodes) {
     try {
       known.predicted = held_out_figures(measured_nodes(source), LogCovariance(true));
     } catch (const Error&) {  // too few nodes, or all of them near grazing: no prediction

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -140,15 +141,17 @@ void add_measure_command(CLI::App& app) {
     if (!arguments->out.empty()) check_writable(arguments->out);
     const Source source = arguments->source.open();
     if (arguments->next > 0) return say_next(source, arguments->next, arguments->out, arguments->json);
+    std::optional<Progress> progress(std::in_place, "measuring");
     const Samples samples = [&] {
-      const Progress progress("measuring");
       try {
         return measure(source.ref(), arguments->measurement);
       } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", arguments->source.spec, error.what()));
       }
     }();
+    if (const auto stage = progress->stages()) stage("writing", 0);
     write_then_rename(arguments->out, samples_csv(samples, source.findings.lambda_nm));
+    progress.reset();
     if (arguments->json)
       print_as_json(
           {{"output", arguments->out}, {"samples", samples.size()}, {"channels", samples.channels}});

@@ -410,7 +410,8 @@ std::string samples_csv(const Samples& samples, std::span<const double> lambda_n
   text += '\n';
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto& [wi, wo] = samples.pairs[i];
-    text += fmt::format("{},{},{},{},{},{}", wi.x, wi.y, wi.z, wo.x, wo.y, wo.z);
+    // The sum makes 0 of -0.
+    text += fmt::format("{},{},{},{},{},{}", wi.x + 0.0, wi.y + 0.0, wi.z, wo.x + 0.0, wo.y + 0.0, wo.z);
     for (const double value : samples.at(i)) text += fmt::format(",{}", value);
     text += '\n';
   }
