@@ -234,7 +234,8 @@ TEST(CommandLine, SaysOfOneSampleWhatItKnows) {
 TEST(CommandLine, WritesNoNegativeZeroAndAnAssetOfGltf) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const TemporaryFolder folder("written");
-  const std::string patches = (folder.path / "patches.xml").string(), table = (folder.path / "t.csv").string();
+  const std::string patches = (folder.path / "patches.xml").string(),
+                    table = (folder.path / "t.csv").string();
   ASSERT_EQ(burnish(fmt::format("convert lambert '{}' --cells 2", patches)).status, 0);
   ASSERT_EQ(burnish(fmt::format("convert '{}' '{}'", patches, table)).status, 0);
   EXPECT_THAT(std::string(read_file(table).text()), testing::Not(testing::ContainsRegex("(^|[,\n])-0[,\n]")));

@@ -258,7 +258,8 @@ void check_name_of_json(const FitCommand& arguments) {
   throw CLI::ValidationError(
       fmt::format("--output: expected a name such as paint.json{}, for JSON is written{}, found '{}'",
                   gltf ? " or paint.gltf" : "",
-                  ending == ".glb" || ending == ".gltf" ? " (`burnish export --to gltf` writes a GLB)" : "", arguments.out));
+                  ending == ".glb" || ending == ".gltf" ? " (`burnish export --to gltf` writes a GLB)" : "",
+                  arguments.out));
 }
 
 void fit_to_material(const FitCommand& arguments) {

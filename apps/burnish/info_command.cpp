@@ -118,17 +118,16 @@ void print_text(const SourceReport& report, const std::optional<NodesKnown>& nod
   const auto& [source, albedos, reciprocity, model, mirror_asymmetry, warnings] = report;
   print_findings(source, warnings, nodes);
   for (const auto& [theta_i, phi_i, albedo] : albedos)
-    print_line(source.findings.transmits() ? "transmitted" : "albedo",
-               fmt::format("{} at theta_i = {:.0f}{} degrees{}{}",
-                           albedo.unknown_fraction < 1
-                               ? fmt::format("{}", fmt::join(shown(albedo.albedo), " "))
-                               : std::string("unknown"),
-                           degrees(theta_i), phi_i > 0 ? fmt::format(", phi_i = {:.0f}", degrees(phi_i)) : "",
-                           albedo.unknown_fraction > 0 && albedo.unknown_fraction < 1
-                               ? fmt::format(", {:.1f} % of the hemisphere unknown",
-                                             100 * albedo.unknown_fraction)
-                               : "",
-                           added_light(albedo)));
+    print_line(
+        source.findings.transmits() ? "transmitted" : "albedo",
+        fmt::format("{} at theta_i = {:.0f}{} degrees{}{}",
+                    albedo.unknown_fraction < 1 ? fmt::format("{}", fmt::join(shown(albedo.albedo), " "))
+                                                : std::string("unknown"),
+                    degrees(theta_i), phi_i > 0 ? fmt::format(", phi_i = {:.0f}", degrees(phi_i)) : "",
+                    albedo.unknown_fraction > 0 && albedo.unknown_fraction < 1
+                        ? fmt::format(", {:.1f} % of the hemisphere unknown", 100 * albedo.unknown_fraction)
+                        : "",
+                    added_light(albedo)));
   print_line(
       "reciprocity",
       fmt::format("mean relative asymmetry {:.4g} over {} pairs{}", reciprocity.mean, reciprocity.pairs,

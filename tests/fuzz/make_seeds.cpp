@@ -36,8 +36,8 @@ std::string speos_of_two_parts() {
     for (const int theta : {least, least + 90}) text += std::to_string(theta) + "\t0.06\t0.07\n";
     return text;
   };
-  return "OPTIS - brdf surface file v8.0\n0\nseed\n5\nnone\n1\t1\n1\n2\t1\n0 60\n550\n" + block(0) + block(0) +
-         block(90) + block(90) + "End of file\n";
+  return "OPTIS - brdf surface file v8.0\n0\nseed\n5\nnone\n1\t1\n1\n2\t1\n0 60\n550\n" + block(0) +
+         block(0) + block(90) + block(90) + "End of file\n";
 }
 
 /// Returns a Zemax file of this type with the bands of colour.
@@ -78,7 +78,8 @@ int main(int argc, char** argv) {
     write(folder, "rgl-spectral", burnish::seeds::spectral_rgl_seed());
   for (const std::string folder : {"tensortree", "source"})
     write(folder, "tensortree4", burnish::seeds::kTensorTree4);
-  const auto write_source = [&](const std::string& folder, const std::string& name, const std::string& bytes) {
+  const auto write_source = [&](const std::string& folder, const std::string& name,
+                                const std::string& bytes) {
     write(folder, name, bytes);
     write("source", name, bytes);
   };
@@ -92,9 +93,11 @@ int main(int argc, char** argv) {
   write_source("zemax", "zemax-colour", colour_zemax("BRDF"));
   write_source("mbsdf", "mbsdf-plain", replaced(mbsdf_seed(), "MBSDF_DATA_REFLECTION=", "MBSDF_DATA="));
   write_source("csv", "csv-tabs", replaced(replaced(kCsv, ",", "\t"), "\n", "\r"));
-  write_source("csv", "csv-plane", "Theta_I;theta_v;Value_450;note\n10,5;-30;0,1;a\n10,5;0;0,2;b\n10,5;30;0,3;c\n");
+  write_source("csv", "csv-plane",
+               "Theta_I;theta_v;Value_450;note\n10,5;-30;0,1;a\n10,5;0;0,2;b\n10,5;30;0,3;c\n");
   write_source("csv", "csv-view", "theta_i,phi_i,theta_v,phi_v,CCBRDF\n60,0,0,0,.1\n20,0,0,0,.2\n");
-  write_source("astm", "astm-brf", replaced(replaced(replaced(kAstm, "R,G,B", "BRF"), ",1,2,3", ",1"), ",4,5,6", ",4"));
+  write_source("astm", "astm-brf",
+               replaced(replaced(replaced(kAstm, "R,G,B", "BRF"), ",1,2,3", ",1"), ",4,5,6", ",4"));
   write("illuminant", "illuminant", burnish::seeds::kIlluminant);
   write("surface", "surface", burnish::seeds::surface_seed());
   write("surface", "surface-exr", burnish::seeds::surface_exr_seed());
