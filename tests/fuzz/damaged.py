@@ -25,7 +25,7 @@ import time
 
 MOST_BYTES, MOST_SECONDS, LONGEST_ERROR = 1 << 30, 5, 299
 LONGEST_LINE = 309  # of a conversion, which tells all that is lost
-HANGS = 120  # seconds of the clock after which a program that uses no processor is ended too
+HANGS = 600  # seconds of the clock after which a program that uses no processor is ended too
 LARGE = 100_000  # larger files, and networks of 800,000 weights, are taken once in SELDOM times: they take longer
 SELDOM = 200
 READS = ("info", "convert", "eval", "measure", "compare", "export")  # what does not more than read and write names the file
