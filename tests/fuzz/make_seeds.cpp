@@ -98,6 +98,7 @@ int main(int argc, char** argv) {
   write_source("csv", "csv-view", "theta_i,phi_i,theta_v,phi_v,CCBRDF\n60,0,0,0,.1\n20,0,0,0,.2\n");
   write_source("astm", "astm-brf",
                replaced(replaced(replaced(kAstm, "R,G,B", "BRF"), ",1,2,3", ",1"), ",4,5,6", ",4"));
+  write("ssdd", "ssdd-binary", burnish::seeds::binary_ssdd_seed());
   write("illuminant", "illuminant", burnish::seeds::kIlluminant);
   write("surface", "surface", burnish::seeds::surface_seed());
   write("surface", "surface-exr", burnish::seeds::surface_exr_seed());

@@ -14,7 +14,9 @@
 #include <burnish/io/formats.h>
 #include <burnish/io/fourier.h>
 #include <burnish/io/fred.h>
+#include <burnish/io/integra.h>
 #include <burnish/io/klems.h>
+#include <burnish/io/lighttools.h>
 #include <burnish/io/mbsdf.h>
 #include <burnish/io/merl.h>
 #include <burnish/io/neural.h>
@@ -22,6 +24,8 @@
 #include <burnish/io/openmaterial.h>
 #include <burnish/io/rgl.h>
 #include <burnish/io/speos.h>
+#include <burnish/io/speos_scattering.h>
+#include <burnish/io/ssdd.h>
 #include <burnish/io/tensor_tree_xml.h>
 #include <burnish/io/utia.h>
 #include <burnish/io/window_xml.h>
@@ -73,6 +77,15 @@ Source read_tensor_tree(const FileBytes& file, const OpenOptions& options) {
   return {file.name, colour_of(std::move(parsed)), std::move(findings)};
 }
 
+Source read_ssdd(const FileBytes& file, const OpenOptions& options) {
+  SsddFile parsed = parse_ssdd(file, options);
+  return std::visit(
+      [&](auto& brdf) {
+        return Source{file.name, std::move(brdf), std::move(parsed.findings)};
+      },
+      parsed.brdf);
+}
+
 Source read_model(const FileBytes& file, const OpenOptions&) {
   return to_source(file.name, parse_model(file));
 }
@@ -114,9 +127,21 @@ bool is_compact_model(const FileBytes& file) {
 }
 
 /// Returns true for a Zemax file. A line of text may stand before the XML of a window system, so that is excluded.
-/// Tensor trees are window systems too, and OpenMATERIAL files are JSON as baselines are.
+/// LightTools' and Integra's files may begin as Zemax' do. Tensor trees are window systems too, and OpenMATERIAL files
+/// are JSON as baselines are.
 bool is_zemax(const FileBytes& file) {
-  return looks_like_zemax(file.text()) && !looks_like_window_xml(file.text());
+  const std::string_view text = file.text();
+  return looks_like_zemax(text) && !looks_like_window_xml(text) && !looks_like_lighttools(text) &&
+         !looks_like_integra(text);
+}
+
+bool is_lighttools(const FileBytes& file) {
+  return looks_like_lighttools(file.text()) && !looks_like_window_xml(file.text());
+}
+
+bool is_integra(const FileBytes& file) {
+  return looks_like_integra(file.text()) && !looks_like_lighttools(file.text()) &&
+         !looks_like_window_xml(file.text());
 }
 
 bool is_klems(const FileBytes& file) {
@@ -198,6 +223,26 @@ constexpr Format kFormats[] = {
      .holds = "theta and phi of each incidence, grey or spectra",
      .looks_like = seen<looks_like_speos>,
      .parse = read_by<parse_speos>},
+    {.title = "simple scattering",
+     .endings = ".simplescattering",
+     .holds = "Speos' Lambertian and Gaussian shares, grey, isotropic",
+     .looks_like = seen<looks_like_speos_scattering>,
+     .parse = read_by<parse_speos_scattering>},
+    {.title = "LightTools",
+     .endings = ".bsdf",
+     .holds = "theta and phi of each incidence, grey or XYZ, isotropic",
+     .looks_like = is_lighttools,
+     .parse = read_by<parse_lighttools>},
+    {.title = "Integra",
+     .endings = ".ddr, .ddt",
+     .holds = "angles around the mirror direction, grey, RGB or spectra",
+     .looks_like = is_integra,
+     .parse = read_by<parse_integra>},
+    {.title = "SSDD",
+     .endings = ".ssdd",
+     .holds = "angles in four systems, grey, RGB, XYZ or spectra",
+     .looks_like = seen<looks_like_ssdd>,
+     .parse = read_ssdd},
     {.title = "Fourier BSDF",
      .endings = ".bsdf",
      .holds = "cosine series between splines, grey or RGB, isotropic",

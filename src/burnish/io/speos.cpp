@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include <fmt/format.h>
 
-#include <burnish/io/illuminant.h>
 #include <burnish/io/part_choice.h>
 #include <burnish/io/sample_file.h>
+#include <burnish/io/spectral_table.h>
 #include <burnish/io/speos.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/math/angles.h>
@@ -435,37 +434,12 @@ CountedTable make_table(const FileBytes& file, const Content& content) {
   return result;
 }
 
-void check_wavelengths(const std::string& file, const std::vector<double>& lambda_nm) {
-  if (!lambda_nm.empty() &&
-      (lambda_nm.front() <= 0 || lambda_nm.back() >= 1e6 ||
-       std::adjacent_find(lambda_nm.begin(), lambda_nm.end(), std::greater_equal<>{}) != lambda_nm.end()))
-    throw Error::in_file(file, "positive, increasing wavelengths",
-                         fmt::format("{} ... {} nm out of order", lambda_nm.front(), lambda_nm.back()));
-}
-
 /// Returns true if all rotations have the same values.
 bool rotations_alike(const Content& content) {
   return std::all_of(content.blocks.begin(), content.blocks.end(), [](const auto& of_channel) {
     return std::all_of(of_channel.begin(), of_channel.end(),
                        [&](const auto& r) { return r == of_channel.front(); });
   });
-}
-
-/// Converts one channel for each wavelength to three of linear Rec. 709.
-AngleTable in_rec709(const std::string& file, AngleTable table, const std::vector<double>& lambda_nm,
-                     const std::string& illuminant) {
-  const auto weights = rec709_weights_of(file, lambda_nm, illuminant);
-  std::vector<float> rgb(entry_count(table) * 3);
-  for (std::size_t entry = 0; entry < rgb.size() / 3; ++entry)
-    for (std::size_t c = 0; c < 3; ++c) {
-      double sum = 0;
-      for (std::size_t k = 0; k < weights.size(); ++k)
-        sum += weights[k][c] * static_cast<double>(table.values[entry * weights.size() + k]);
-      rgb[3 * entry + c] = static_cast<float>(sum);
-    }
-  table.values = std::move(rgb);
-  table.channel_count = 3;
-  return table;
 }
 
 }  // namespace
@@ -519,12 +493,7 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
   findings.theta_o_min = table.axes[2].nodes.front();
   findings.theta_o_max = table.axes[2].nodes.back();
 
-  if (content.lambda_nm.size() > 1 && !options.keep_spectral) {
-    table = in_rec709(file.name, std::move(table), content.lambda_nm, options.illuminant);
-    findings.illuminant = illuminant_name(options.illuminant);
-  } else {
-    findings.lambda_nm = content.lambda_nm;
-  }
+  table = shown_spectrum(file.name, std::move(table), content.lambda_nm, options, findings);
   return result;
 }
 

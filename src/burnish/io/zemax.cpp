@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 
 #include <burnish/io/part_choice.h>
+#include <burnish/io/stated_totals.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/angles.h>
-#include <burnish/math/luminance.h>
+#include <burnish/math/rec709_d65.h>
 #include <burnish/math/written_degrees.h>
-#include <burnish/metrics/albedo.h>
 
 namespace burnish {
 
@@ -21,15 +21,6 @@ namespace {
 constexpr std::size_t kMaxAngles = 4096;
 
 using Row = std::array<double, 3>;
-
-/// Converts XYZ relative to D65 to linear Rec. 709, rows R, G, B. Source: [ITU 2015].
-constexpr std::array<Row, 3> kRec709 = {
-    // clang-format off
-    {{ 3.2404542, -1.5371385, -0.4985314},
-     {-0.9692660,  1.8760108,  0.0415560},
-     { 0.0556434, -0.2040259,  1.0572252}}
-    // clang-format on
-};
 
 double product(const Row& row, const double* v) noexcept {
   return row[0] * v[0] + row[1] * v[1] + row[2] * v[2];
@@ -206,68 +197,6 @@ std::vector<double> read_channel(TextReader& reader, const TableSizes& sizes, do
   return totals;
 }
 
-/// Returns the luminance of one channel or of three.
-double luminance_of_channels(const std::vector<double>& values) noexcept {
-  return values.size() == 1 ? values[0] : luminance({values[0], values[1], values[2]});
-}
-
-/// Returns the integral of the values at a block's incidence.
-double integral_of_block(const AngleTable& table, std::size_t rotation, std::size_t incidence,
-                         double accuracy) {
-  const Vec3 wi = spherical_direction(table.axes[1].nodes[incidence], table.axes[0].nodes[rotation]);
-  return luminance_of_channels(directional_albedo(table, wi, accuracy).albedo);
-}
-
-constexpr double kTrustedTotal = 0.05;  // relative to TIS; allows for quadrature and rounding
-constexpr double kMostTotalTheta = radians(85);
-
-/// Compares the values' integrals at a few incidences of the first rotation with the stated TIS of the luminance
-/// channel.
-void check_totals(const AngleTable& table, const std::vector<double>& stated, Findings& findings) {
-  constexpr std::size_t kMostIncidences = 4;
-  constexpr double kAccuracy = 0.02;
-  const std::vector<double>& incidences = table.axes[1].nodes;
-  const std::size_t step = (incidences.size() + kMostIncidences - 1) / kMostIncidences;
-  double worst = 0, worst_found = 0;
-  std::size_t worst_at = 0, compared = 0;
-  for (std::size_t i = 0; i < incidences.size(); i += step) {
-    if (!(stated[i] > 0) || incidences[i] > kMostTotalTheta) continue;
-    const double found = integral_of_block(table, 0, i, kAccuracy);
-    ++compared;
-    const double off = std::abs(found - stated[i]) / std::max(stated[i], kTrustedTotal);
-    if (off > worst) worst = off, worst_found = found, worst_at = i;
-  }
-  if (worst > kTrustedTotal)
-    findings.warnings.push_back(fmt::format(
-        "The values integrate to {:.3g} % at theta_i = {:.3g} degrees, TIS says {:.3g} %: taken as they are "
-        "(--scale-to-tis scales them).",
-        100 * worst_found, degrees(incidences[worst_at]), 100 * stated[worst_at]));
-  else if (compared > 0)
-    findings.conventions.push_back("The values integrate to the stated TIS.");
-}
-
-/// Scales each block to its TIS, as Ansys does. Some blocks take the factor of the incidence before: those without a
-/// positive TIS or integral, and those near grazing, where the table ends.
-void scale_to_totals(AngleTable& table, const std::vector<double>& stated, Findings& findings) {
-  const std::size_t rotations = table.axes[0].nodes.size(), incidences = table.axes[1].nodes.size();
-  const std::size_t block = table.values.size() / (rotations * incidences);
-  std::vector<double> factors(stated.size(), 1.0);
-  for (std::size_t b = 0; b < factors.size(); ++b) {
-    const double found = table.axes[1].nodes[b % incidences] > kMostTotalTheta
-                             ? 0
-                             : integral_of_block(table, b / incidences, b % incidences, kAlbedoTolerance);
-    if (found > 0 && stated[b] > 0)
-      factors[b] = stated[b] / found;
-    else if (b % incidences > 0)
-      factors[b] = factors[b - 1];
-  }
-  for (std::size_t k = 0; k < table.values.size(); ++k)
-    table.values[k] = static_cast<float>(static_cast<double>(table.values[k]) * factors[k / block]);
-  findings.most_negative *= std::ranges::max(factors);
-  findings.conventions.push_back(fmt::format("The values were scaled to TIS, by {:.4g} to {:.4g}.",
-                                             std::ranges::min(factors), std::ranges::max(factors)));
-}
-
 /// Fills the table with the values read, grey or XYZ, and notes holes, negative values and angles.
 void fill_values(const std::vector<double>& read, const Header& header, const TableSizes& sizes,
                  ZemaxFile& result) {
@@ -288,7 +217,7 @@ void fill_values(const std::vector<double>& read, const Header& header, const Ta
     if (channels == 1)
       value[0] = static_cast<float>(from[0]);
     else
-      for (std::size_t c = 0; c < 3; ++c) value[c] = static_cast<float>(product(kRec709[c], from));
+      for (std::size_t c = 0; c < 3; ++c) value[c] = static_cast<float>(product(kRec709OfD65[c], from));
 
     for (std::size_t c = 0; c < channels; ++c)
       if (value[c] < 0) {
@@ -446,7 +375,8 @@ AngleTable zemax_layout(bool isotropic) {
 }
 
 bool fits_zemax(const AngleTable& table) noexcept {
-  return table.frame == AngleTable::Frame::specular && (table.channel_count == 1 || table.channel_count == 3);
+  return table.frame == AngleTable::Frame::specular && table.centre_theta.empty() &&
+         (table.channel_count == 1 || table.channel_count == 3);
 }
 
 std::string format_zemax(const AngleTable& table, std::string_view sample,
@@ -471,7 +401,7 @@ std::string format_zemax(const AngleTable& table, std::string_view sample,
 
   // Channels follow one another. Each begins its blocks with TIS, which readers expect although the entries
   // determine it.
-  const auto to_xyz = inverse(kRec709);
+  const auto to_xyz = inverse(kRec709OfD65);
   const std::vector<Row> totals = block_integrals(table);
   const std::size_t columns = axes[3].nodes.size(), block = axes[2].nodes.size() * columns;
   constexpr std::array kNames = {"TristimulusX", "TristimulusY", "TristimulusZ"};

@@ -23,10 +23,18 @@ struct SpecularFrame {
   Vec3 specular, up, across;
 };
 
-SpecularFrame specular_frame(double theta_i, double phi_i) noexcept {
-  const Vec3 specular = spherical_direction(theta_i, phi_i + kPi);
-  const Vec3 up{std::cos(theta_i) * std::cos(phi_i), std::cos(theta_i) * std::sin(phi_i), std::sin(theta_i)};
+SpecularFrame specular_frame(double theta, double phi_i) noexcept {
+  const Vec3 specular = spherical_direction(theta, phi_i + kPi);
+  const Vec3 up{std::cos(theta) * std::cos(phi_i), std::cos(theta) * std::sin(phi_i), std::sin(theta)};
   return {specular, up, cross(specular, up)};
+}
+
+/// Returns the polar angle of the direction that the table's last two angles count from.
+double centre_of(const AngleTable& table, double theta_i) noexcept {
+  if (table.centre_theta.empty()) return theta_i;
+  const AxisNeighbours near = neighbours(table.axes[1], theta_i);
+  return (1 - near.fraction) * table.centre_theta[near.index[0]] +
+         near.fraction * table.centre_theta[near.index[1]];
 }
 
 }  // namespace
@@ -90,7 +98,7 @@ bool AngleTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept 
     angles[2] = theta_of(wo);
     angles[3] = phi_of(wo) - phi_i;
   } else {
-    const auto [specular, up, across] = specular_frame(theta_i, phi_i);
+    const auto [specular, up, across] = specular_frame(centre_of(*this, theta_i), phi_i);
     const Vec3 about{dot(wo, up), dot(wo, across), 0};
     angles[2] = is_pole(about) ? 0 : std::atan2(about.y, about.x);
     angles[3] = angle_between(specular, wo);
@@ -144,9 +152,9 @@ std::array<std::size_t, 4> node_of_entry(const AngleTable& table, std::size_t en
 DirectionPair node_directions(const AngleTable& table, const std::array<std::size_t, 4>& node) noexcept {
   std::array<double, 4> at;
   for (std::size_t k = 0; k < 4; ++k) at[k] = table.axes[k].nodes[node[k]];
-  return {spherical_direction(at[1], at[0]), table.frame == AngleTable::Frame::normal
-                                                 ? spherical_direction(at[2], at[0] + at[3])
-                                                 : around_specular(at[1], at[0], at[2], at[3])};
+  const Vec3 wi = spherical_direction(at[1], at[0]);
+  if (table.frame == AngleTable::Frame::normal) return {wi, spherical_direction(at[2], at[0] + at[3])};
+  return {wi, around_specular(centre_of(table, at[1]), at[0], at[2], at[3])};
 }
 
 AngleTable tabulate_angles(BrdfRef source, AngleTable layout) {

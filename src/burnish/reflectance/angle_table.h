@@ -39,7 +39,8 @@ std::vector<double> cell_centres(std::size_t count, double extent);
 /// frame:
 /// - normal: theta_o and the azimuth phi_o - phi_i;
 /// - specular: the azimuth around and the angle from the mirror direction of wi; azimuth 0 points to the
-///   normal and grows counter-clockwise as seen against the mirror direction.
+///   normal and grows counter-clockwise as seen against the mirror direction. Refracted light has another direction
+///   in the place of the mirror direction (centre_theta).
 /// A single node of phi_i makes it isotropic.
 struct AngleTable {
   enum class Frame { normal, specular };
@@ -50,6 +51,9 @@ struct AngleTable {
   std::size_t channel_count = 1;
   /// [axis 0][axis 1][axis 2][axis 3][channel], 1/sr; NaN in all channels is a hole
   std::vector<float> values;
+  /// Frame::specular: for each node of theta_i the polar angle of the direction that the last two angles count from,
+  /// radians. Empty if it is theta_i.
+  std::vector<double> centre_theta = {};
 
   std::size_t channels() const noexcept { return channel_count; }
   bool isotropic() const noexcept { return axes[0].nodes.size() == 1; }

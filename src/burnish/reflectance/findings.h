@@ -18,6 +18,12 @@ struct Origin {
   friend bool operator==(const Origin&, const Origin&) = default;
 };
 
+/// A share of light that a file states beside its function: light that is mirrored, or passes straight on.
+struct DirectShare {
+  double theta_i = 0;  ///< radians
+  double share = 0;    ///< of the light received, in [0, 1]; of a colour the luminance
+};
+
 /// The facts that a reader found in a source, as `burnish info` prints them.
 struct Findings {
   std::string format;       ///< "MERL binary", "Cornell scattered spectra", "analytic", ...
@@ -40,6 +46,7 @@ struct Findings {
   std::vector<BsdfBlock> blocks;  ///< every part and band that the file holds, where its format has several
   /// The part and band that were read, or that a model was fitted to; nothing where a format has reflection alone.
   std::optional<BsdfBlock> block;
+  std::vector<DirectShare> direct;    ///< of the block that was read, by rising theta_i; no function has it
   std::vector<std::string> comments;  ///< remarks of a format that keeps them, without their marks
 
   /// Returns true of transmission, whose wo is mirrored through the surface: see BsdfPart.

@@ -205,6 +205,35 @@ inline const std::string kSpeos =
     "OPTIS - Anisotropic BSDF surface file v8.0\n0\nseed\n4\nnone\n1\t0\t0\n1\t0\n0\n2\n0 90\n1\n30\n1\n30\n"
     "30\t0\nspectrum\n2\n450\t20\n650\t40\n2 3\n\t0\t120\t240\n0\t1\t1\t1\n60\t0.4\t0.5\t0.6\n"
     "2 3\n\t0\t120\t240\n0\t1\t1\t1\n60\t0.4\t-0.5\t0.6\nEnd of file\n";
+/// A LightTools BSDF of two incidences, of reflection on the front and transmission on the back.
+inline const std::string kLightTools =
+    "# seed\nSymmetry PlaneSymmetrical\nSpectralContent Monochrome\nScatterAzimuth 3\n90 180 270\n"
+    "ScatterRadial 2\n0 60\nDataBegin\nAOI 0\nPOI 0\nSide Front\nWavelength 550\nScatterType BRDF\nTIS 0.3\n"
+    "0.1 0.2\n0.1 0.3\n0.1 0.4\nAOI 30\nPOI 0\nSide Front\nWavelength 550\nScatterType BRDF\nTIS 0.3\n"
+    "0.1 0.2\n0.1 -0.3\n0.1 0.5\nAOI 180\nPOI 0\nSide Back\nWavelength 550\nScatterType BTDF\nTIS 0.2\n"
+    "0.2 0.1\n0.2 0.1\n0.2 0.1\nDataEnd\n";
+inline const std::string kIntegra =
+    ";; seed\nSource Measured\nTypeSym PlaneSymmetrical\nTypeColorModel RGB\nTypeData Luminance Absolute\n"
+    "sigma 2\n 0 45\nsigmat\n 0 28\nphi 2\n 0 180\ntheta 3\n 0 10 90\nred\n kbdf\n 1 0.5\n def\n"
+    " 3 2 1\n 3 2 .5\n;; sigma = 45\n 6 2 1\n 6 1 0\n enddef\ngre\n def\n 1 1 1 1 1 1 1 1 1 1 1 -1\n enddef\n"
+    "blue\n def\n 2 2 2 2 2 2 2 2 2 2 2 2\n enddef\n";
+inline const std::string kSsdd =
+    "VERSION 0.3\nSOFTWARE seed\n\n# paint\nDATA_TYPE brdf\nCOLOR_MODEL spectrum\nWAVELENGTH_LIST 450 550 "
+    "650\n"
+    "PARAM_TYPE half_difference_coordinate_system\nREDUCTION_TYPE bilateral_symmetry reciprocity\n"
+    "PARAM0_LIST 0 90\nPARAM2_LIST 0 90\nPARAM3_LIST 0 90\nNAME seed\nDATA ascii\n# PARAM3: 0\n1 2 3\n"
+    ".1 .2 .3\n1 2 3\n.1 .2 .3\n1 2 3\n.1 .2 -.3\n1 2 3\n.1 .2 .3\n\nDATA_TYPE specular_reflectance\n"
+    "COLOR_MODEL monochrome\nPARAM0_LIST 0 90\nDATA ascii\n0.05\n0.5\n";
+/// Returns an SSDD file of binary values in specular coordinates.
+inline std::string binary_ssdd_seed() {
+  std::string bytes =
+      "VERSION 0.2\nDATA_TYPE btdf\nCOLOR_MODEL xyz\nPARAM_TYPE specular_coordinate_system\n"
+      "PARAM0_LIST 0 45\nPARAM2_LIST 0 20 180\nPARAM3_LIST 0 180 360\nPARAM4_LIST 0 -17\nDATA binary\n";
+  for (int k = 0; k < 3 * 2 * 3 * 3; ++k) append(bytes, 0.1f * static_cast<float>(k % 7));
+  return bytes;
+}
+inline const std::string kSpeosScattering =
+    "OPTIS - Simple scattering surface file v2.0\nseed\nBoth\n\n10 20 40 30 50\n4 8\n0\n60\n";
 inline const std::string kTensorTree =
     "<WindowElement><Optical><Layer><DataDefinition><IncidentDataStructure>TensorTree3</"
     "IncidentDataStructure>"
@@ -272,6 +301,11 @@ inline std::vector<std::pair<std::string, std::string>> all_seeds() {
           {"openmaterial", kOpenMaterial},
           {"alta", kAlta},
           {"speos", kSpeos},
+          {"simple", kSpeosScattering},
+          {"lighttools", kLightTools},
+          {"integra", kIntegra},
+          {"ssdd", kSsdd},
+          {"ssdd_binary", binary_ssdd_seed()},
           {"tensortree", kTensorTree},
           {"neural", neural_seed()},
           {"baseline", baseline_seed()}};
