@@ -171,7 +171,7 @@ TEST(CommandLine, ConvertsWhatWasMeasuredAndSaysWhatAnOptionIsOf) {
   EXPECT_EQ(samples("--entries"), 4u * 4 * 8);
   EXPECT_EQ(samples("--count 9"), 9u);
   for (const auto& [arguments, said] :
-       {std::pair{"l.mbsdf a.bsdf --cells 9", "--cells: expected merl, mbsdf, tensortree or slices"},
+       {std::pair{"l.mbsdf a.bsdf --cells 9", "--cells: expected merl, mbsdf, tensortree, klems or slices"},
         std::pair{"l.mbsdf a.mbsdf --cells 9", "entries that mbsdf keeps as they are"},
         std::pair{"l.mbsdf a.binary --count 9", "--count: expected astm, csv or openmaterial"},
         std::pair{"l.mbsdf a.binary --entries", "--entries: expected"},

@@ -2,6 +2,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,6 +13,8 @@
 #include <burnish/file.h>
 #include <burnish/io/convert.h>
 #include <burnish/io/formats.h>
+#include <burnish/io/open_source.h>
+#include <burnish/io/window_xml.h>
 #include <burnish/math/closest_name.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/surface/surface_file.h>
@@ -28,6 +33,7 @@ namespace {
 struct ConvertArguments {
   SourceArguments source;
   std::string out, to;
+  std::vector<std::string> with;  // files of further parts
   ConvertOptions options;
   bool json = false;
 };
@@ -116,6 +122,30 @@ bool converts_surface(const ConvertArguments& arguments, std::string_view format
   return true;
 }
 
+/// Returns the source and, for a format that holds several parts, the other parts: those of its file, unless one was
+/// asked for, and those of the files of --with.
+std::vector<Source> with_other_parts(const ConvertArguments& arguments, const Format& format, Source source) {
+  std::vector<Source> parts;
+  parts.push_back(std::move(source));
+  const Findings found = parts.front().findings;
+  const OpenOptions& given = arguments.source.options;
+  if (format.write_parts && !given.part && given.band.empty() && found.block)
+    for (const BsdfBlock& block : found.blocks) {
+      // CIE-XYZ stands for bands that are listed themselves.
+      if (block == found.block || block.band == kColourBand) continue;
+      OpenOptions options = given;
+      options.part = block.part;
+      options.band = block.band;
+      parts.push_back(open_source(arguments.source.spec, options));
+    }
+  for (const std::string& file : arguments.with) {
+    SourceArguments other = arguments.source;
+    other.spec = file;
+    parts.push_back(other.open());
+  }
+  return parts;
+}
+
 void run_convert(const ConvertArguments& given_arguments, const GivenOptions& given) {
   ConvertArguments arguments = given_arguments;
   if (arguments.out.empty()) throw CLI::RequiredError("OUT or -o");
@@ -124,17 +154,21 @@ void run_convert(const ConvertArguments& given_arguments, const GivenOptions& gi
   check_options(given, *format);
   check_writable(arguments.out);
   if (converts_surface(arguments, format->to)) return;
-  const Source source = arguments.source.open();
+  Source source = arguments.source.open();
   check_source(given, source);
+  // Patches stay patches unless --to names the other format of this ending.
+  if (std::holds_alternative<PatchTable>(source.brdf) && format->to == "tensortree" && arguments.to.empty())
+    format = format_to("klems");
   // A model is written as slices only if --to names them.
   const bool is_model = std::holds_alternative<FactoredBrdf>(source.brdf);
   if (is_model && format->to == "exr" && arguments.to.empty()) format = format_to("model");
   check_options(given, *format);
   // Entries of a measured table are kept, unless --count asks for draws.
   if (!given.count && format->entries_first && has_entries(source)) arguments.options.entries = true;
+  const std::vector<Source> parts = with_other_parts(arguments, *format, std::move(source));
   const Converted converted = [&] {
     const Progress progress("converting");
-    return convert(source, format->to, arguments.options);
+    return convert_parts(parts, format->to, arguments.options);
   }();
   if (given.cells && !converted.resampled)
     throw CLI::ValidationError(fmt::format(
@@ -163,6 +197,7 @@ void add_convert_command(CLI::App& app) {
       "Examples: burnish convert paint.bsdf paint.binary\n"
       "          burnish convert paint.binary paint.csv\n"
       "          burnish convert model.exr model.burnish\n"
+      "          burnish convert front.burnish shade.xml --to klems --with back.burnish\n"
       "          burnish convert surface:wall.burnish#3,4 texel.exr");
   auto arguments = std::make_shared<ConvertArguments>();
   add_source_arguments(*verb, arguments->source);
@@ -179,6 +214,9 @@ void add_convert_command(CLI::App& app) {
                                formats_with(&Format::takes_cells, "and")))
       ->check(in_range(2, 1000))
       ->capture_default_str();
+  verb->add_option("--with", arguments->with,
+                   "Adds the parts of further files to one that holds several: klems, tensortree, speos.")
+      ->type_name("FILE");
   auto* count = verb->add_option("--count", arguments->options.count,
                                  fmt::format("Draws this many samples for {}, instead of a table's entries.",
                                              formats_with(&Format::takes_count)))

@@ -112,8 +112,8 @@ export interface ExportOptions {
 
 /** Exports of one file: those of the verb `convert`. "exr" is a model's own file, for other materials an image of
  * slices. */
-export type FileKind = "burnish" | "model" | "exr" | "merl" | "utia" | "rgl" | "mbsdf" | "zemax" | "tensortree" | "openmaterial" |
-  "astm" | "csv";
+export type FileKind = "burnish" | "model" | "exr" | "merl" | "utia" | "rgl" | "mbsdf" | "zemax" | "tensortree" | "klems" |
+  "speos" | "openmaterial" | "astm" | "csv";
 /** Exports of several files: for models those of the verb `export`; for OpenPBR all that need no tables; for surfaces
  * ktx2, dds, png, gltf, three, html and languages. */
 export type FilesKind = "ktx2" | "dds" | "cube" | "png" | "gltf" | "materialx" | "usda" | "mdl" | "three" | "babylon" | "html" | Language;

@@ -349,7 +349,7 @@ export class Material {
   }
 }
 
-const kConverted = new Set(["merl", "utia", "rgl", "mbsdf", "zemax", "tensortree", "openmaterial", "astm", "csv", "exr", "model", "burnish"]);
+const kConverted = new Set(["merl", "utia", "rgl", "mbsdf", "zemax", "tensortree", "klems", "speos", "openmaterial", "astm", "csv", "exr", "model", "burnish"]);
 
 // WebGL2's [internal format, format, type] for texels of a format, by channels.
 const kTexels = {

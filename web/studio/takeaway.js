@@ -13,9 +13,9 @@ const modelFiles = {burnish: ".burnish", model: "OpenEXR", ktx2: "KTX2 textures"
 const openPbrFiles = {materialx: "MaterialX", usda: "USD", gltf: "glTF", three: "three.js", babylon: "Babylon.js", html: "Page"};
 const surfaceFiles = {burnish: ".burnish", ktx2: "KTX2 textures", png: "PNG maps", three: "three.js", html: "Page", gltf: "glTF"};
 // Formats of any material, and the endings of names.
-const anyFiles = {merl: "MERL", utia: "UTIA", rgl: "RGL", mbsdf: "MBSDF", zemax: "Zemax", tensortree: "Tensor tree", openmaterial: "OpenMATERIAL",
+const anyFiles = {merl: "MERL", utia: "UTIA", rgl: "RGL", mbsdf: "MBSDF", zemax: "Zemax", tensortree: "Tensor tree", klems: "Klems", speos: "Speos", openmaterial: "OpenMATERIAL",
                   astm: "ASTM", csv: "CSV", exr: "EXR slices"};
-const kExtensions = {merl: "binary", utia: "bin", rgl: "bsdf", zemax: "zemax.bsdf", tensortree: "xml", openmaterial: "xompt", model: "exr"};
+const kExtensions = {merl: "binary", utia: "bin", rgl: "bsdf", zemax: "zemax.bsdf", tensortree: "xml", klems: "klems.xml", speos: "anisotropicbsdf", openmaterial: "xompt", model: "exr"};
 const kLongLink = 32 << 10;
 
 let language = "glsl_es", textOpen = false;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
 #include <optional>
 
@@ -10,6 +9,7 @@
 #include <burnish/error.h>
 #include <burnish/factors/compact_file.h>
 #include <burnish/io/astm.h>
+#include <burnish/io/convert_compare.h>
 #include <burnish/io/convert_writers.h>
 #include <burnish/io/csv.h>
 #include <burnish/io/formats.h>
@@ -19,13 +19,11 @@
 #include <burnish/io/openmaterial.h>
 #include <burnish/io/rgl.h>
 #include <burnish/io/slice_image.h>
-#include <burnish/io/tensor_tree_xml.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/io/utia.h>
 #include <burnish/io/window_xml.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/closest_name.h>
-#include <burnish/math/luminance.h>
 #include <burnish/math/spectrum.h>
 #include <burnish/reflectance/azimuth_mean.h>
 #include <burnish/reflectance/goniometer.h>
@@ -36,12 +34,9 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kComparedPairs = 2000;
-constexpr double kFloor = 1e-3;       // as in error_figures.h
 constexpr double kReciprocal = 1e-6;  // an asymmetry up to this is rounding
 constexpr std::size_t kMirrorPairs = 500;
-constexpr double kTreeTolerance = 1e-3;  // relative; cubes whose values agree within it become one
-constexpr double kGrey_nm = 555;         // wavelength of grey in a format of spectra
+constexpr double kGrey_nm = 555;  // wavelength of grey in a format of spectra
 
 /// A source mirrored in the plane of incidence: it has the values of the other side.
 struct OtherSide {
@@ -55,21 +50,6 @@ struct OtherSide {
   }
 };
 
-/// The luminance of an RGB source, the value of a grey one.
-struct Luminance {
-  BrdfRef source;
-
-  std::size_t channels() const noexcept { return 1; }
-  bool isotropic() const noexcept { return source.isotropic(); }
-  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-    if (source.channels() == 1) return source.eval(wi, wo, f);
-    std::array<double, 3> rgb;
-    const bool known = source.eval(wi, wo, rgb);
-    f[0] = luminance({rgb[0], rgb[1], rgb[2]});
-    return known;
-  }
-};
-
 /// Returns the table with each value three times.
 AngleTable in_three_channels(const AngleTable& grey) {
   AngleTable table = grey;
@@ -77,48 +57,6 @@ AngleTable in_three_channels(const AngleTable& grey) {
   table.values.clear();
   for (const float value : grey.values) table.values.insert(table.values.end(), 3, value);
   return table;
-}
-
-/// Returns the figure `relative` over the pairs that both sides know; nothing if there are none.
-std::optional<double> relative_difference(BrdfRef a, BrdfRef b, std::size_t count) {
-  const auto channels_a = a.channels(), channels_b = b.channels();
-  const std::vector<DirectionPair> pairs = draw_pairs(count, 1, a.isotropic() && b.isotropic());
-  std::vector<double> f(pairs.size() * channels_a), g(pairs.size() * channels_b);
-  std::vector<std::uint8_t> known_a(pairs.size()), known_b(pairs.size());
-  a.eval(pairs, f, known_a);
-  b.eval(pairs, g, known_b);
-
-  double sum = 0;
-  std::size_t terms = 0;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (!known_a[i] || !known_b[i]) continue;
-    const std::size_t channels = std::max(channels_a, channels_b);
-    for (std::size_t c = 0; c < channels; ++c, ++terms) {
-      const auto value = [i, c](const std::vector<double>& v, std::size_t size) {
-        return std::max(v[i * size + (size == 1 ? 0 : c)], 0.0);
-      };
-      sum += std::abs(std::log((value(f, channels_a) + kFloor) / (value(g, channels_b) + kFloor)));
-    }
-  }
-  if (terms == 0) return std::nullopt;
-  return std::expm1(sum / static_cast<double>(terms));
-}
-
-/// Returns true if the channels differ at any pair.
-bool has_colour(BrdfRef brdf) {
-  const auto channels = brdf.channels();
-  if (channels == 1) return false;
-  const std::vector<DirectionPair> pairs = draw_pairs(kComparedPairs, 1, brdf.isotropic());
-  std::vector<double> f(pairs.size() * channels);
-  std::vector<std::uint8_t> known(pairs.size());
-  brdf.eval(pairs, f, known);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (!known[i]) continue;
-    const auto values = std::span(f).subspan(i * channels, channels);
-    const auto [least, most] = std::minmax_element(values.begin(), values.end());
-    if (*most - *least > 1e-6 * std::abs(*most)) return true;
-  }
-  return false;
 }
 
 /// Returns true if the description is in the file's own words. MERL and UTIA files have none, so theirs is burnish's.
@@ -235,10 +173,7 @@ class Converter {
   }
 
   /// Returns the name that the source has in its file, or its file's name without folders.
-  std::string sample_name() const {
-    return source_.findings.description.empty() ? std::filesystem::path(source_.name).filename().string()
-                                                : source_.findings.description;
-  }
+  std::string sample_name() const { return burnish::sample_name(source_); }
 
   Converted kept(std::string bytes) {
     return {.bytes = std::move(bytes),
@@ -250,14 +185,6 @@ class Converter {
 
   /// Returns the part of the source; in a format without sides it is a front one.
   BsdfPart part() const { return source_.findings.block.value_or(BsdfBlock{}).part; }
-
-  /// Returns the block of a window system's file that the source came from. Other sources become Radiance's
-  /// front. They stand in the visible spectrum, as the luminance of a colour does.
-  BsdfBlock window_block() const {
-    BsdfBlock block = source_.findings.block.value_or(BsdfBlock{BsdfPart::reflection_back, {}});
-    if (block.band.empty() || block.band == kColourBand) block.band = "Visible";
-    return block;
-  }
 
   /// Samples the source at half/difference cells. Both orders of directions have one value unless cells cover
   /// the circle.
@@ -343,21 +270,6 @@ class Converter {
     lose_unknown(made);
     if (made.channel_count == 1) made = in_three_channels(made);
     return sampled("6 x 48 x 6 x 48 angles, constant beyond 75 degrees", format_utia(made));
-  }
-
-  Converted tensor_tree() {
-    require_grey_or_rgb("a tensor tree");
-    if (const auto* tree = std::get_if<TensorTree>(&source_.brdf))
-      return kept(format_tensor_tree(*tree, sample_name(), window_block()));
-    const Luminance grey{brdf_};
-    if (has_colour(brdf_)) lose("colour: its luminance is kept");
-    // An axis has half the cells of a polar angle, rounded down to a power of two from 2 to 32.
-    int depth = 1;
-    while (depth < 5 && 4 << depth <= options_.cells) ++depth;
-    const int along = 1 << depth;
-    const TensorTree made = tabulate_tree(grey, depth, kTreeTolerance);
-    const std::string text = format_tensor_tree(made, sample_name(), window_block());
-    return sampled(fmt::format("{0} x {0} x {0} x {0} cells of Shirley-Chiu squares", along), text, grey);
   }
 
   Converted openmaterial() {
@@ -528,8 +440,7 @@ Samples table_entries(const Source& source) {
 namespace {
 
 /// Returns what the source's file holds and files of this format have no place for.
-Losses left_behind(const Source& source, const Format& format) {
-  const Findings& found = source.findings;
+Losses left_behind(const Source& source, const Findings& found, const Format& format) {
   Losses losses;
   if (!found.left_out.empty()) losses.push_back(fmt::format("{}", fmt::join(found.left_out, ", ")));
   if (found.transmits() && !format.keeps_transmission)
@@ -549,12 +460,42 @@ Losses left_behind(const Source& source, const Format& format) {
   return losses;
 }
 
-Converted written(const Source& source, std::string_view name, const ConvertOptions& options) {
+const Format& checked_format(std::string_view name, const ConvertOptions& options) {
   if (options.cells < 2 || options.cells > 1000)
     throw Error(fmt::format("expected 2 to 1000 cells, found {}", options.cells));
   const Format* const format = format_to(name);
   if (!format) throw Error("convert: " + expected_one_of(convert_formats(), name));
-  return format->write(source, options, left_behind(source, *format));
+  return *format;
+}
+
+Converted written(const Source& source, std::string_view name, const ConvertOptions& options) {
+  const Format& format = checked_format(name, options);
+  return format.write(source, options, left_behind(source, source.findings, format));
+}
+
+/// Returns true if a reader's words about what it left out mean this block.
+bool means_block(std::string_view words, const BsdfBlock& block) {
+  const std::string_view direction = window_direction(block.part);
+  return words == to_string(block) || words == to_string(block.part) || same_name(words, direction) ||
+         same_name(words, fmt::format("{} ({})", direction, block.band)) ||
+         words == (is_transmission(block.part) ? "transmission" : "reflection");
+}
+
+/// Returns what files of this format have no place for, of all parts together. Parts that stand in the list
+/// themselves are not lost.
+Losses left_behind(std::span<const Source> parts, const Format& format) {
+  Losses all;
+  for (const Source& part : parts) {
+    Findings found = part.findings;
+    std::erase_if(found.left_out, [&](const std::string& words) {
+      return std::ranges::any_of(parts, [&](const Source& other) {
+        return other.findings.block && means_block(words, *other.findings.block);
+      });
+    });
+    for (std::string& loss : left_behind(part, found, format))
+      if (std::ranges::find(all, loss) == all.end()) all.push_back(std::move(loss));
+  }
+  return all;
 }
 
 }  // namespace
@@ -575,6 +516,15 @@ Converted convert(const Source& source, std::string_view format, const ConvertOp
   }
 }
 
+Converted convert_parts(std::span<const Source> parts, std::string_view format_name,
+                        const ConvertOptions& options) {
+  const Format& format = checked_format(format_name, options);
+  if (parts.size() == 1) return convert(parts.front(), format_name, options);
+  if (parts.empty() || !format.write_parts)
+    throw Error(fmt::format("convert: expected one part for {}, found {}", format.to, parts.size()));
+  return format.write_parts(parts, options, left_behind(parts, format));
+}
+
 Converted write_merl(const Source& source, const ConvertOptions& options, Losses losses) {
   return Converter(source, options, std::move(losses)).merl();
 }
@@ -593,10 +543,6 @@ Converted write_mbsdf(const Source& source, const ConvertOptions& options, Losse
 
 Converted write_zemax(const Source& source, const ConvertOptions& options, Losses losses) {
   return Converter(source, options, std::move(losses)).zemax();
-}
-
-Converted write_tensor_tree(const Source& source, const ConvertOptions& options, Losses losses) {
-  return Converter(source, options, std::move(losses)).tensor_tree();
 }
 
 Converted write_openmaterial(const Source& source, const ConvertOptions& options, Losses losses) {

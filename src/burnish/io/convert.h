@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,7 +40,9 @@ inline constexpr double kFarFromSource = 0.2;
 /// are sampled at the nodes of the format:
 /// - MERL and slices: 90 x 90 x 180 half/difference cells;
 /// - MBSDF: 90 x 90 x 180 angle cells;
-/// - Zemax, UTIA, RGL: the nodes of zemax_layout, utia_layout and RglOptions{};
+/// - Klems XML: means over the 145 x 145 patches of the full basis, which keep each patch's energy, over the 41 x 41 of
+///   the quarter basis below 45 `cells`;
+/// - Speos, Zemax, UTIA, RGL: the nodes of speos_layout, zemax_layout, utia_layout and RglOptions{};
 /// - tensor tree: cells, 32 along each axis of its squares, fewer below 64 `cells`; cubes whose values agree
 ///   within 0.1 % become one.
 ///
@@ -53,6 +56,11 @@ inline constexpr double kFarFromSource = 0.2;
 /// or "burnish" and the source is no model. Throws it for channels that the format cannot hold, and for
 /// entries of a source that has none.
 Converted convert(const Source& source, std::string_view format, const ConvertOptions& options = {});
+
+/// Converts several parts of one surface into one file. Throws Error if the format holds one part alone, or the same
+/// part and band comes twice, and as convert does.
+Converted convert_parts(std::span<const Source> parts, std::string_view format,
+                        const ConvertOptions& options = {});
 
 /// Returns true if table_entries can read the source's entries.
 bool has_entries(const Source& source) noexcept;

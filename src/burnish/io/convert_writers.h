@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,19 @@ Converted write_rgl(const Source& source, const ConvertOptions& options, Losses 
 Converted write_mbsdf(const Source& source, const ConvertOptions& options, Losses losses);
 Converted write_zemax(const Source& source, const ConvertOptions& options, Losses losses);
 Converted write_tensor_tree(const Source& source, const ConvertOptions& options, Losses losses);
+Converted write_klems(const Source& source, const ConvertOptions& options, Losses losses);
+Converted write_speos(const Source& source, const ConvertOptions& options, Losses losses);
 Converted write_openmaterial(const Source& source, const ConvertOptions& options, Losses losses);
 Converted write_astm(const Source& source, const ConvertOptions& options, Losses losses);
 Converted write_csv(const Source& source, const ConvertOptions& options, Losses losses);
 Converted write_slices(const Source& source, const ConvertOptions& options, Losses losses);
 Converted write_model(const Source& source, const ConvertOptions& options, Losses losses);
 Converted write_compact(const Source& source, const ConvertOptions& options, Losses losses);
+
+/// Writers of several parts of one surface, for Format::write_parts. There are two parts or more.
+Converted write_tensor_tree_parts(std::span<const Source> parts, const ConvertOptions& options,
+                                  Losses losses);
+Converted write_klems_parts(std::span<const Source> parts, const ConvertOptions& options, Losses losses);
+Converted write_speos_parts(std::span<const Source> parts, const ConvertOptions& options, Losses losses);
 
 }  // namespace burnish

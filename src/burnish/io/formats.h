@@ -44,6 +44,9 @@ struct Format {
   /// those found before.
   Converted (*write)(const Source& source, const ConvertOptions& options,
                      std::vector<std::string> losses) = nullptr;
+  /// The writer of several parts of one surface; nullptr if the format holds one.
+  Converted (*write_parts)(std::span<const Source> parts, const ConvertOptions& options,
+                           std::vector<std::string> losses) = nullptr;
   std::string_view other_endings = {};  ///< further endings of a written file
   bool takes_cells = false;             ///< --cells applies to it
   bool takes_count = false;             ///< --count and --entries apply to it

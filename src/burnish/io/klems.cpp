@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <pugixml.hpp>
@@ -12,6 +14,7 @@
 #include <burnish/io/window_xml.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/spectrum.h>
+#include <burnish/math/written_degrees.h>
 
 namespace burnish {
 
@@ -118,6 +121,46 @@ PatchTable colour_table(const WindowXml& reader, std::span<const PatchTable> xyz
   return table;
 }
 
+/// The bases that files of a writer have so far, and their names.
+class BasisNames {
+ public:
+  /// Returns the name of a basis: the known one, or one of its own.
+  const std::string& of(PatchBasis basis) {
+    basis.first_azimuth = 0;
+    const auto found = std::ranges::find(named_, basis, &Named::basis);
+    if (found != named_.end()) return found->name;
+    const std::pair<PatchBasis, const char*> known[] = {{klems_full_basis(), "LBNL/Klems Full"},
+                                                        {klems_half_basis(), "LBNL/Klems Half"},
+                                                        {klems_quarter_basis(), "LBNL/Klems Quarter"}};
+    std::string name = fmt::format("Patches {}", named_.size() + 1);
+    for (const auto& [rings, its_name] : known)
+      if (rings == basis) name = its_name;
+    return named_.emplace_back(Named{std::move(basis), std::move(name)}).name;
+  }
+  /// Returns the elements that state every basis.
+  std::string definitions() const {
+    std::string text;
+    for (const auto& [basis, name] : named_) {
+      text += fmt::format("<AngleBasis>\n<AngleBasisName>{}</AngleBasisName>\n", name);
+      for (const PatchRing& ring : basis.rings)
+        text += fmt::format(
+            "<AngleBasisBlock><Theta>{}</Theta><nPhis>{}</nPhis><ThetaBounds><LowerTheta>{}</LowerTheta>"
+            "<UpperTheta>{}</UpperTheta></ThetaBounds></AngleBasisBlock>\n",
+            ring.count == 1 ? 0 : written_degrees((ring.theta_low + ring.theta_high) / 2), ring.count,
+            written_degrees(ring.theta_low), written_degrees(ring.theta_high));
+      text += "</AngleBasis>\n";
+    }
+    return text;
+  }
+
+ private:
+  struct Named {
+    PatchBasis basis;
+    std::string name;
+  };
+  std::vector<Named> named_;
+};
+
 }  // namespace
 
 bool looks_like_klems(std::string_view text) noexcept {
@@ -154,6 +197,23 @@ KlemsFile parse_klems(const FileBytes& file, const OpenOptions& options) {
   findings.sample_count = table.values.size() / table.channel_count;
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
   return result;
+}
+
+std::string format_klems(std::span<const PatchBlock> blocks, std::string_view material) {
+  BasisNames names;
+  std::vector<WrittenBlock> written;
+  for (const auto& [table, block] : blocks) {
+    std::string elements =
+        fmt::format("<ColumnAngleBasis>{}</ColumnAngleBasis>\n", names.of(table->incident));
+    elements += fmt::format(
+        "<RowAngleBasis>{}</RowAngleBasis>\n<ScatteringDataType>{}</ScatteringDataType>\n<ScatteringData>\n",
+        names.of(table->outgoing), is_transmission(block.part) ? "BTDF" : "BRDF");
+    const std::size_t columns = table->incident.size();
+    for (std::size_t k = 0; k < table->values.size(); ++k)
+      elements += fmt::format("{}{}", table->values[k], (k + 1) % columns == 0 ? ",\n" : ", ");
+    written.push_back({block, elements + "</ScatteringData>\n"});
+  }
+  return format_window_xml(material, "Columns", names.definitions(), written);
 }
 
 }  // namespace burnish

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+#include <string>
 #include <string_view>
 
 #include <burnish/io/byte_reader.h>
@@ -30,5 +32,16 @@ bool looks_like_klems(std::string_view text) noexcept;
 /// Error if the matrix is not as large as its bases, or a value is not finite. Values of all four parts agree with
 /// those of Radiance (tests/bsdf).
 KlemsFile parse_klems(const FileBytes& file, const OpenOptions& options);
+
+/// A matrix and the block that it becomes.
+struct PatchBlock {
+  const PatchTable* table;
+  BsdfBlock block;
+};
+
+/// Returns the file that holds the matrices, as columns. Bases that Radiance and WINDOW know have their names, and all
+/// are stated ring by ring. Reading the file back gives the same matrices, every value to its last bit. Preconditions:
+/// there is a matrix, each has one channel, and incident azimuths count from pi, as parse_klems has them.
+std::string format_klems(std::span<const PatchBlock> blocks, std::string_view material);
 
 }  // namespace burnish

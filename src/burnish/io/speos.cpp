@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include <burnish/io/speos.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/written_degrees.h>
 
 namespace burnish {
 
@@ -442,6 +444,85 @@ bool rotations_alike(const Content& content) {
   });
 }
 
+/// The three pieces of a part, which stand in a file apart from each other.
+struct WrittenPart {
+  std::string angles, spectrum, blocks;
+};
+
+/// A node of a table as the file has it: its angle in degrees, and its place on the table's axis.
+struct FileAngle {
+  double angle_deg;
+  std::size_t at;
+};
+
+/// Returns the angles of an axis in the file's order. A circle ends at 360 degrees, where its first angle comes again.
+std::vector<FileAngle> file_angles(const AngleAxis& axis, double (*in_file)(double), bool circle) {
+  std::vector<FileAngle> angles;
+  for (std::size_t k = 0; k < axis.nodes.size(); ++k)
+    angles.push_back({in_file(written_degrees(axis.nodes[k])), k});
+  std::ranges::sort(angles, {}, &FileAngle::angle_deg);
+  if (circle && angles.front().angle_deg == 0) angles.push_back({360, angles.front().at});
+  return angles;
+}
+
+std::string joined_angles(const std::vector<FileAngle>& angles) {
+  std::string text;
+  for (const FileAngle& angle : angles)
+    text += fmt::format("{}{}", &angle == angles.data() ? "" : "\t", angle.angle_deg);
+  return text;
+}
+
+WrittenPart written_part(const AngleTable& table, bool transmits) {
+  const auto& axes = table.axes;
+  const std::vector<FileAngle> rotations =
+      axes[0].nodes.size() == 1 ? std::vector<FileAngle>{{0, 0}, {360, 0}}
+                                : file_angles(
+                                      axes[0], [](double deg) { return std::fmod(540 - deg, 360); }, true);
+  const std::vector<FileAngle> incidences = file_angles(
+      axes[1], [](double deg) { return deg; }, false);
+  const std::vector<FileAngle> thetas = transmits ? file_angles(
+                                                        axes[2], [](double deg) { return 180 - deg; }, false)
+                                                  : file_angles(
+                                                        axes[2], [](double deg) { return deg; }, false);
+  const std::vector<FileAngle> phis =
+      table.folded ? file_angles(
+                         axes[3], [](double deg) { return 180 - deg; }, false)
+                   : file_angles(
+                         axes[3], [](double deg) { return std::fmod(deg + 180, 360); }, true);
+
+  WrittenPart part;
+  part.angles = fmt::format("{}\n{}\n", rotations.size(), joined_angles(rotations));
+  for (std::size_t r = 0; r < rotations.size(); ++r)
+    part.angles += fmt::format("{}\n{}\n", incidences.size(), joined_angles(incidences));
+  std::optional<double> share;
+  for (const FileAngle& rotation : rotations)
+    for (const FileAngle& incidence : incidences) {
+      Block block;
+      for (const FileAngle& theta : thetas) block.theta_deg.push_back(theta.angle_deg);
+      for (const FileAngle& phi : phis) block.phi_deg.push_back(phi.angle_deg);
+      part.blocks += fmt::format("{} {}\n\t{}\n", thetas.size(), phis.size(), joined_angles(phis));
+      for (const FileAngle& theta : thetas) {
+        part.blocks += fmt::format("{}", theta.angle_deg);
+        for (const FileAngle& phi : phis) {
+          const std::size_t entry =
+              ((rotation.at * axes[1].nodes.size() + incidence.at) * axes[2].nodes.size() + theta.at) *
+                  axes[3].nodes.size() +
+              phi.at;
+          const float f = std::isnan(table.values[entry]) ? 0 : table.values[entry];
+          part.blocks += fmt::format("\t{}", f);
+          block.values.push_back(static_cast<double>(f));
+        }
+        part.blocks += '\n';
+      }
+      if (share) continue;
+      if (transmits) mirror_thetas(block);
+      share = std::max(integral(block, true), 0.0);
+    }
+  part.spectrum = fmt::format("{}\t0\n{}\n2\n380\t{}\n780\t{}\n", incidences.front().angle_deg,
+                              transmits ? "Transmission" : "Reflection", 100 * *share, 100 * *share);
+  return part;
+}
+
 }  // namespace
 
 bool looks_like_speos(std::string_view text) noexcept {
@@ -495,6 +576,42 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
 
   table = shown_spectrum(file.name, std::move(table), content.lambda_nm, options, findings);
   return result;
+}
+
+AngleTable speos_layout(bool isotropic) {
+  const auto steps = [](int count, double step_deg) {
+    std::vector<double> angles;
+    for (int i = 0; i < count; ++i) angles.push_back(radians(step_deg * i));
+    return angles;
+  };
+  AngleTable table;
+  table.folded = isotropic;
+  std::vector<double> incidences = isotropic ? steps(18, 5) : steps(9, 10);
+  if (!isotropic) incidences.push_back(radians(85));
+  table.axes = {make_axis(steps(isotropic ? 1 : 24, 15), kTwoPi), make_axis(std::move(incidences)),
+                make_axis(steps(37, 2.5)),
+                isotropic ? make_axis(steps(37, 5)) : make_axis(steps(36, 10), kTwoPi)};
+  return table;
+}
+
+bool fits_speos(const AngleTable& table) noexcept {
+  const AngleAxis& azimuths = table.axes[3];
+  return table.frame == AngleTable::Frame::normal && table.channel_count == 1 && table.isotropic() &&
+         table.axes[2].nodes.size() > 1 && azimuths.nodes.size() > 1 &&
+         (table.folded ? azimuths.nodes.front() == 0 && azimuths.nodes.back() > kPi - 1e-9 : azimuths.closed);
+}
+
+std::string format_speos(const SpeosParts& parts, std::string_view comment) {
+  std::vector<WrittenPart> written;
+  if (parts.reflection) written.push_back(written_part(*parts.reflection, false));
+  if (parts.transmission) written.push_back(written_part(*parts.transmission, true));
+  std::string text =
+      fmt::format("{} v8.0\n0\n{}\n0\n\n1\t0\t0\n{}\t{}\n1\n", kAnisotropic, printable(comment, 160),
+                  parts.reflection ? 1 : 0, parts.transmission ? 1 : 0);
+  for (const WrittenPart& part : written) text += part.angles;
+  for (const WrittenPart& part : written) text += part.spectrum;
+  for (const WrittenPart& part : written) text += part.blocks;
+  return text + "End of file\n";
 }
 
 }  // namespace burnish

@@ -108,20 +108,6 @@ void add_braces(const TensorTree& tree, std::size_t index, std::string& text) {
   text += " }\n";
 }
 
-/// Returns a name as XML content.
-std::string escaped(std::string_view name) {
-  std::string text;
-  for (const char c : name) {
-    if (c == '<')
-      text += "&lt;";
-    else if (c == '&')
-      text += "&amp;";
-    else
-      text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return text;
-}
-
 }  // namespace
 
 bool looks_like_tensor_tree(std::string_view text) noexcept {
@@ -184,25 +170,23 @@ FunctionBrdf colour_of(TensorTreeFile file) {
 }
 
 std::string format_tensor_tree(const TensorTree& tree, std::string_view material, const BsdfBlock& block) {
-  std::string braces;
-  add_braces(tree, 0, braces);
-  return fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-      "<WindowElement xmlns=\"http://windows.lbl.gov\" "
-      "xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" "
-      "xsi:schemaLocation=\"http://windows.lbl.gov/BSDF-v1.4.xsd\">\n"
-      "<WindowElementType>System</WindowElementType>\n<FileType>BSDF</FileType>\n<Optical>\n<Layer>\n"
-      "<Material>\n<Name>{}</Name>\n<Manufacturer>unknown</Manufacturer>\n<DeviceType>Other</DeviceType>\n"
-      "</Material>\n<DataDefinition>\n<IncidentDataStructure>TensorTree{}</IncidentDataStructure>\n"
-      "</DataDefinition>\n<WavelengthData>\n<LayerNumber>System</LayerNumber>\n"
-      "<Wavelength unit=\"Integral\">{}</Wavelength>\n<WavelengthDataBlock>\n"
-      "<WavelengthDataDirection>{}</WavelengthDataDirection>\n"
-      "<AngleBasis>LBNL/Shirley-Chiu</AngleBasis>\n<ScatteringDataType>BTDF</ScatteringDataType>\n"
-      "<ScatteringData>\n{}</ScatteringData>\n</WavelengthDataBlock>\n</WavelengthData>\n</Layer>\n</"
-      "Optical>\n"
-      "</WindowElement>\n",
-      escaped(material), tree.rank, escaped(block.band.empty() ? "Visible" : block.band),
-      window_direction(block.part), braces);
+  const TreeBlock only{&tree, block};
+  return format_tensor_trees({&only, 1}, material);
+}
+
+std::string format_tensor_trees(std::span<const TreeBlock> trees, std::string_view material) {
+  std::vector<WrittenBlock> blocks;
+  for (const auto& [tree, block] : trees) {
+    if (tree->rank != trees.front().tree->rank)
+      throw Error("tensor trees of one file: expected one rank, found 3 and 4");
+    std::string braces;
+    add_braces(*tree, 0, braces);
+    blocks.push_back({block, fmt::format("<AngleBasis>LBNL/Shirley-Chiu</AngleBasis>\n"
+                                         "<ScatteringDataType>BTDF</ScatteringDataType>\n"
+                                         "<ScatteringData>\n{}</ScatteringData>\n",
+                                         braces)});
+  }
+  return format_window_xml(material, fmt::format("TensorTree{}", trees.front().tree->rank), "", blocks);
 }
 
 }  // namespace burnish

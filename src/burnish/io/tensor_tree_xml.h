@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,5 +41,14 @@ FunctionBrdf colour_of(TensorTreeFile file);
 /// spectrum. Reading it back gives the same tree, every value to its last bit.
 std::string format_tensor_tree(const TensorTree& tree, std::string_view material,
                                const BsdfBlock& block = {BsdfPart::reflection_back, "Visible"});
+
+/// A tree and the block that it becomes.
+struct TreeBlock {
+  const TensorTree* tree;
+  BsdfBlock block;
+};
+
+/// Returns the file that holds several trees. Precondition: there is one. Throws Error if their ranks differ.
+std::string format_tensor_trees(std::span<const TreeBlock> trees, std::string_view material);
 
 }  // namespace burnish

@@ -93,6 +93,20 @@ std::string sentence_of(const std::vector<BsdfBlock>& blocks, const BsdfBlock& t
   return sentence;
 }
 
+/// Returns a name as XML content.
+std::string escaped(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    if (c == '<')
+      text += "&lt;";
+    else if (c == '&')
+      text += "&amp;";
+    else
+      text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string_view window_direction(BsdfPart part) noexcept {
@@ -163,6 +177,28 @@ ChosenBlock WindowXml::choose(const OpenOptions& options, Findings& findings) co
   note_blocks(blocks, chosen, options, findings);
   findings.left_out = other_blocks(layer_, found[chosen].nodes);
   return {.nodes = found[chosen].nodes, .sentence = sentence_of(blocks, blocks[chosen], options)};
+}
+
+std::string format_window_xml(std::string_view material, std::string_view structure,
+                              std::string_view definitions, std::span<const WrittenBlock> blocks) {
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<WindowElement xmlns=\"http://windows.lbl.gov\" "
+      "xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" "
+      "xsi:schemaLocation=\"http://windows.lbl.gov/BSDF-v1.4.xsd\">\n"
+      "<WindowElementType>System</WindowElementType>\n<FileType>BSDF</FileType>\n<Optical>\n<Layer>\n"
+      "<Material>\n<Name>{}</Name>\n<Manufacturer>unknown</Manufacturer>\n<DeviceType>Other</DeviceType>\n"
+      "</Material>\n<DataDefinition>\n<IncidentDataStructure>{}</IncidentDataStructure>\n{}"
+      "</DataDefinition>\n",
+      escaped(material), structure, definitions);
+  for (const auto& [block, elements] : blocks)
+    text += fmt::format(
+        "<WavelengthData>\n<LayerNumber>System</LayerNumber>\n"
+        "<Wavelength unit=\"Integral\">{}</Wavelength>\n<WavelengthDataBlock>\n"
+        "<WavelengthDataDirection>{}</WavelengthDataDirection>\n{}</WavelengthDataBlock>\n</"
+        "WavelengthData>\n",
+        escaped(block.band.empty() ? "Visible" : block.band), window_direction(block.part), elements);
+  return text + "</Layer>\n</Optical>\n</WindowElement>\n";
 }
 
 }  // namespace burnish

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,5 +59,16 @@ class WindowXml {
   pugi::xml_document document_;
   pugi::xml_node layer_;
 };
+
+/// One block of a file to write: its part and band, and the elements between the direction and the block's end.
+struct WrittenBlock {
+  BsdfBlock block;
+  std::string elements;
+};
+
+/// Returns a window system's file: the material's name, IncidentDataStructure, what else stands in DataDefinition, and
+/// the blocks. Bands without a name are Visible.
+std::string format_window_xml(std::string_view material, std::string_view structure,
+                              std::string_view definitions, std::span<const WrittenBlock> blocks);
 
 }  // namespace burnish
