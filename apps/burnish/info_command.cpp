@@ -16,8 +16,10 @@
 #include <burnish/book/book_file.h>
 #include <burnish/error.h>
 #include <burnish/file.h>
+#include <burnish/io/open_source.h>
 #include <burnish/io/source_report.h>
 #include <burnish/io/text_reader.h>
+#include <burnish/io/window_xml.h>
 #include <burnish/math/angles.h>
 #include <burnish/shaders/cost_json.h>
 
@@ -102,6 +104,22 @@ std::string added_light(const DirectionalAlbedo& albedo) {
   return fmt::format(", {} more with values below zero cut", fmt::join(shown(added), " "));
 }
 
+/// Adds the totals of the parts that were not read. CIE-XYZ stands for bands that are listed themselves.
+void add_other_totals(const SourceArguments& arguments, SourceReport& report) {
+  constexpr std::size_t kMost = 16;
+  for (const BsdfBlock& block : report.source.findings.blocks) {
+    if (block == report.source.findings.block || block.band == kColourBand) continue;
+    if (report.totals.size() == kMost) return;
+    OpenOptions options = arguments.options;
+    options.part = block.part;
+    options.band = block.band;
+    try {
+      report.totals.push_back(totals_of(open_source(arguments.spec, options)));
+    } catch (const Error&) {  // a part that cannot be read is named as left out, and has no totals
+    }
+  }
+}
+
 void print_factors(const FactoredBrdf& model) {
   if (const auto cost = shader_cost(model)) print_line("shader", to_string(*cost));
   for (const Lobe& lobe : model.lobes())
@@ -115,7 +133,7 @@ void print_factors(const FactoredBrdf& model) {
 }
 
 void print_text(const SourceReport& report, const std::optional<NodesKnown>& nodes) {
-  const auto& [source, albedos, reciprocity, model, mirror_asymmetry, warnings] = report;
+  const auto& [source, albedos, reciprocity, model, mirror_asymmetry, totals, warnings] = report;
   print_findings(source, warnings, nodes);
   for (const auto& [theta_i, phi_i, albedo] : albedos)
     print_line(
@@ -128,6 +146,11 @@ void print_text(const SourceReport& report, const std::optional<NodesKnown>& nod
                         ? fmt::format(", {:.1f} % of the hemisphere unknown", 100 * albedo.unknown_fraction)
                         : "",
                     added_light(albedo)));
+  for (const auto& [block, at] : totals)
+    for (const TotalAt& total : at)
+      print_line("total",
+                 fmt::format("{} at {:.0f} degrees: direct {:.1f} %, scattered {:.1f} %", to_string(block),
+                             degrees(total.theta_i), 100 * total.direct, 100 * total.scattered));
   print_line(
       "reciprocity",
       fmt::format("mean relative asymmetry {:.4g} over {} pairs{}", reciprocity.mean, reciprocity.pairs,
@@ -207,7 +230,8 @@ void add_info_command(CLI::App& app) {
       return;
     }
     std::optional<Progress> progress(std::in_place, "describing");
-    const SourceReport report = report_on(source);
+    SourceReport report = report_on(source);
+    add_other_totals(*arguments, report);
     const auto nodes = nodes_of(source);
     progress.reset();
     if (*as_json)

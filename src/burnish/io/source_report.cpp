@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <burnish/io/source_report.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/luminance.h>
 #include <burnish/math/written_degrees.h>
+#include <burnish/reflectance/direct_share.h>
 #include <burnish/reflectance/mirror_asymmetry.h>
 
 namespace burnish {
@@ -49,7 +53,53 @@ std::vector<AlbedoAt> reported_albedos(const Source& source) {
   return albedos;
 }
 
+/// Returns the direct share that a file states, linear between its angles.
+double stated_direct(std::span<const DirectShare> stated, double theta_i) noexcept {
+  const auto above = std::ranges::upper_bound(stated, theta_i, {}, &DirectShare::theta_i);
+  if (above == stated.begin()) return above->share;
+  const DirectShare& low = *(above - 1);
+  if (above == stated.end()) return low.share;
+  return std::lerp(low.share, above->share, (theta_i - low.theta_i) / (above->theta_i - low.theta_i));
+}
+
+/// Returns one number of three channels, their luminance, or of others, their mean.
+double one_number(std::span<const double> values) noexcept {
+  if (values.size() == 3) return luminance({values[0], values[1], values[2]});
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+TotalAt total_at(const Source& source, double theta_i) {
+  const Vec3 wi = spherical_direction(theta_i, 0);
+  TotalAt total{.theta_i = theta_i};
+  if (const auto* patches = std::get_if<PatchTable>(&source.brdf)) {
+    std::vector<double> direct, scattered;
+    for (std::size_t c = 0; c < patches->channels(); ++c) {
+      const LightShares shares = light_shares(*patches, wi, c);
+      direct.push_back(shares.direct);
+      scattered.push_back(shares.scattered);
+    }
+    total.direct = one_number(direct);
+    total.scattered = one_number(scattered);
+  } else if (const auto* tree = std::get_if<TensorTree>(&source.brdf)) {
+    const LightShares shares = light_shares(*tree, wi);
+    total.direct = shares.direct;
+    total.scattered = shares.scattered;
+  } else {
+    total.scattered = one_number(directional_albedo(source.ref().unclamped(), wi).albedo);
+    if (!source.findings.direct.empty()) total.direct = stated_direct(source.findings.direct, theta_i);
+  }
+  return total;
+}
+
 }  // namespace
+
+PartTotals totals_of(const Source& source) {
+  PartTotals totals{source.findings.block.value_or(BsdfBlock{}), {}};
+  for (const double theta_i : kAlbedoAngles) totals.totals.push_back(total_at(source, theta_i));
+  return totals;
+}
 
 SourceReport report_on(const Source& source) {
   SourceReport report{source,
@@ -57,14 +107,17 @@ SourceReport report_on(const Source& source) {
                       reciprocity_error(source.ref(), kReciprocityPairs, 1),
                       std::get_if<FactoredBrdf>(&source.brdf),
                       {},
+                      {},
                       source.findings.warnings};
+  if (!source.findings.blocks.empty() || !source.findings.direct.empty())
+    report.totals.push_back(totals_of(source));
   if (auto warning = energy_warning(source, report.albedos)) report.warnings.push_back(*std::move(warning));
   if (source.ref().isotropic()) report.mirror_asymmetry = mirror_asymmetry(source.ref());
   return report;
 }
 
 std::string to_json(const SourceReport& report) {
-  const auto& [source, albedos, reciprocity, model, mirror_asymmetry, warnings] = report;
+  const auto& [source, albedos, reciprocity, model, mirror_asymmetry, totals, warnings] = report;
   const Findings& findings = source.findings;
   nlohmann::ordered_json json{
       {"name", source.name},
@@ -93,6 +146,13 @@ std::string to_json(const SourceReport& report) {
   for (const BsdfBlock& block : findings.blocks)
     json["parts"].push_back(
         {{"part", to_string(block.part)}, {"band", block.band}, {"read", block == findings.block}});
+  for (const auto& [block, at] : totals)
+    for (const TotalAt& total : at)
+      json["totals"].push_back({{"part", to_string(block.part)},
+                                {"band", block.band},
+                                {"theta_i_deg", written_degrees(total.theta_i)},
+                                {"direct", total.direct},
+                                {"scattered", total.scattered}});
   if (mirror_asymmetry) json["mirror_asymmetry"] = *mirror_asymmetry;
   for (const auto& [theta_i, phi_i, albedo] : albedos)
     json["albedo"].push_back({{"theta_i_deg", written_degrees(theta_i)},
