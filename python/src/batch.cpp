@@ -21,9 +21,9 @@ namespace {
 
 // Keywords of a batch besides the options of a fit.
 constexpr std::string_view kOtherKeywords[] = {
-    "to",           "exact",  "mips",          "compressed", "compact",    "resume",          "threads",
-    "memory",       "studio", "keep_spectral", "illuminant", "has_cosine", "clamp_negatives", "back_side",
-    "has_cosine_o", "brf"};
+    "to",           "exact",  "mips",          "compressed", "compact",     "resume",          "threads",
+    "memory",       "studio", "keep_spectral", "illuminant", "has_cosine",  "clamp_negatives", "back_side",
+    "has_cosine_o", "brf",    "part",          "band",       "scale_to_tis"};
 
 using Materials = std::variant<std::vector<std::string>, std::filesystem::path>;
 
@@ -32,7 +32,8 @@ Batch* batch(const Materials& materials, const std::filesystem::path& folder,
              const std::vector<std::string>& to, bool exact, bool mips, bool compressed, bool compact,
              bool resume, int threads, std::uint64_t memory, const std::string& studio, bool keep_spectral,
              const std::string& illuminant, bool has_cosine, bool clamp_negatives, bool back_side,
-             bool has_cosine_o, bool brf, const nb::kwargs& how) {
+             bool has_cosine_o, bool brf, const std::string& part, const std::string& band, bool scale_to_tis,
+             const nb::kwargs& how) {
   if (to.empty() && (exact || mips || !compressed))
     throw Error("batch: expected to= with exact, mips or compressed=False, found no exports");
   open_illuminant(illuminant);  // checked even where no spectrum needs it
@@ -43,7 +44,8 @@ Batch* batch(const Materials& materials, const std::filesystem::path& folder,
   options.memory = memory;
   options.resume = resume;
   options.studio = studio;
-  options.open = {keep_spectral, illuminant, has_cosine, clamp_negatives, back_side, has_cosine_o, brf};
+  options.open = {keep_spectral, illuminant,    has_cosine, clamp_negatives, back_side, has_cosine_o,
+                  brf,           part_of(part), band,       scale_to_tis};
   options.exports.exact = exact;
   options.exports.mips = mips;
   options.exports.compressed = compressed;
@@ -89,15 +91,16 @@ void bind_batch(nb::module_& m) {
         nb::arg("threads") = 0, nb::arg("memory") = 0, nb::arg("studio") = BatchOptions().studio,
         nb::arg("keep_spectral") = false, nb::arg("illuminant") = "E", nb::arg("has_cosine") = false,
         nb::arg("clamp_negatives") = true, nb::arg("back_side") = false, nb::arg("has_cosine_o") = false,
-        nb::arg("brf") = false, nb::arg("how"), nb::rv_policy::take_ownership,
+        nb::arg("brf") = false, nb::arg("part") = "", nb::arg("band") = "", nb::arg("scale_to_tis") = false,
+        nb::arg("how"), nb::rv_policy::take_ownership,
         "Fits a library as `burnish batch` does, and yields a dictionary for each material once it is done.\n"
         "A dictionary has name, argument, files, bytes, fetches, psnr and more, or reason where the fit\n"
         "failed. Its entry earlier is True where an earlier run did the material. The table of figures and\n"
         "the page are written after the last material. A batch that was stopped continues with resume=True.\n"
         "\n"
         "materials: a folder, the path of a list, or arguments of open_source. The batch passes\n"
-        "keep_spectral, illuminant, has_cosine, clamp_negatives, back_side, has_cosine_o and brf on to\n"
-        "open_source.\n"
+        "keep_spectral, illuminant, has_cosine, clamp_negatives, back_side, has_cosine_o, brf, part, band and\n"
+        "scale_to_tis on to open_source.\n"
         "to: exports, named as for export; exact, mips and compressed apply to them.\n"
         "compact: writes .burnish files; False writes OpenEXR files with notes.\n"
         "memory: the most bytes that the batch may use; 0 is four fifths of the memory.\n"

@@ -3,12 +3,15 @@
 
 #include <cstddef>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+
+#include <burnish/reflectance/bsdf_part.h>
 
 namespace burnish::python {
 
@@ -29,6 +32,9 @@ void bind_shaders(nb::module_& m);
 void bind_surfaces(nb::module_& m);
 void bind_uncertainty(nb::module_& m);
 void bind_writers(nb::module_& m);
+
+/// Returns the part of that name, or nothing for an empty name. Throws Error for another name.
+std::optional<BsdfPart> part_of(const std::string& name);
 
 /// Returns a JSON text as Python objects.
 inline nb::object from_json(const std::string& text) {

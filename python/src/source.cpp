@@ -23,9 +23,6 @@
 
 namespace burnish::python {
 
-namespace {
-
-// Returns the part of that name, or nothing for an empty name.
 std::optional<BsdfPart> part_of(const std::string& name) {
   if (name.empty()) return std::nullopt;
   if (const auto part = find_bsdf_part(name)) return part;
@@ -33,6 +30,8 @@ std::optional<BsdfPart> part_of(const std::string& name) {
   for (const BsdfPart part : kBsdfParts) names.push_back(to_string(part));
   throw Error("part: " + expected_one_of(names, name));
 }
+
+namespace {
 
 OpenedBrdf* open(const std::string& spec, const OpenOptions& options) {
   Source source = open_source(spec, options);
