@@ -62,9 +62,10 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "measured reflectance as a few small posit
 set(CPACK_DEBIAN_PROGRAMS_DESCRIPTION
 "Turns any BRDF, measured, scattered or analytic, into a few small positive
 textures and a short shader, with a known error. Reads MERL, RGL, Cornell,
-MBSDF, Zemax, Klems, ASTM E1392, OpenMATERIAL, ALTA, Speos, FRED, UTIA,
-tensor trees, Fourier BSDFs and CSV files as they are. Also evaluates glossy
-highlights without pow, from SIMD code to a hardware block.
+MBSDF, Zemax, Klems, ASTM E1392, OpenMATERIAL, ALTA, Speos, simple scattering,
+LightTools, Integra, SSDD, FRED, UTIA, tensor trees, Fourier BSDFs and CSV
+files as they are. Also evaluates glossy highlights without pow, from SIMD code
+to a hardware block.
 .
 This package holds the command line and its manual pages.")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION
