@@ -16,7 +16,8 @@ namespace burnish {
 
 namespace {
 
-constexpr double kLeastCosine = 1e-6;  // f of the Gaussian share stays finite at the horizon
+constexpr double kLeastCosine = 1e-6;     // f of the Gaussian share stays finite at the horizon
+constexpr double kLeastWidth_deg = 1e-3;  // narrower light is a mirror's, and its peak overflows
 constexpr std::string_view kSimpleScattering = "OPTIS - Simple scattering surface file";
 
 /// Shares of the light received, in [0, 1], and the width of the Gaussian in radians.
@@ -59,8 +60,8 @@ ScatteringSide side_of(const TextReader& reader, double received, double lambert
   if (lambertian + gaussian > 1 + kSlack)
     reader.fail("Lambertian and Gaussian shares of at most 100 %",
                 fmt::format("{:.6g} %", 100 * (lambertian + gaussian)));
-  if (gaussian > 0 && !(fwhm_deg > 0 && fwhm_deg <= 360))
-    reader.fail("a width in (0, 360] degrees", fmt::format("{}", fwhm_deg));
+  if (gaussian > 0 && !(fwhm_deg >= kLeastWidth_deg && fwhm_deg <= 360))
+    reader.fail(fmt::format("a width in [{}, 360] degrees", kLeastWidth_deg), fmt::format("{}", fwhm_deg));
   return {.lambertian = received * lambertian,
           .gaussian = received * gaussian,
           .specular = received * std::max(0.0, 1 - lambertian - gaussian),

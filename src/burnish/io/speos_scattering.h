@@ -26,8 +26,8 @@ bool looks_like_speos_scattering(std::string_view text) noexcept;
 /// direction, or from straight on, and the peak makes the whole sphere's integral the share. A file that Speos made of
 /// a surface of 10 degrees has this form to five digits at every incidence, the part beyond the horizon cut.
 ///
-/// Throws Error on anything else: shares that exceed 100 %, a width of 0 with a Gaussian share, and shares of
-/// reflection and transmission by Fresnel's law, whose index is not in the file. Source: [Ansys 2024].
+/// Throws Error on anything else: shares that exceed 100 %, a width below 0.001 degrees with a Gaussian share, and
+/// shares of reflection and transmission by Fresnel's law, whose index is not in the file. Source: [Ansys 2024].
 SpeosScatteringFile parse_speos_scattering(const FileBytes& file, const OpenOptions& options);
 
 }  // namespace burnish

@@ -72,7 +72,7 @@ TEST(SpeosScattering, SaysWhatIsWrong) {
   const auto error = [](const std::string& body) { return error_of([&] { parsed(body); }); };
   EXPECT_THAT(error("x\nDiffuse\n0 100 0 0\n"), HasSubstr("Reflection, Transmission or Both"));
   EXPECT_THAT(error("x\nReflection\n0 60 60 5\n"), HasSubstr("120 %"));
-  EXPECT_THAT(error("x\nReflection\n0 60 40 0\n"), HasSubstr("a width in (0, 360] degrees"));
+  EXPECT_THAT(error("x\nReflection\n0 60 40 0\n"), HasSubstr("a width in [0.001, 360] degrees"));
   EXPECT_THAT(error("x\nReflection\n101 0 0 0\n"), HasSubstr("absorption in [0, 100] %"));
   EXPECT_THAT(error("x\nBoth\n\n10 20 40 30 50\n4 8\n1\n"), HasSubstr("Fresnel's law needs an index"));
   EXPECT_THAT(error("x\nReflection\n"), HasSubstr("the end of the file"));
