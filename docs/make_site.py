@@ -44,7 +44,7 @@ TOPICS = {
 GUIDE = {
     "Start": ["fitting", "fit-options", "formats", "own-sources", "tables"],
     "Sources": ["scattered", "nodes", "analytic", "materials", "transmission"],
-    "Use": ["evaluation", "python", "shaders", "rendering", "area-lights", "export", "studio"],
+    "Use": ["evaluation", "python", "shaders", "rendering", "area-lights", "drawing", "export", "studio"],
     "More than one": ["surfaces", "library", "cluster"],
     "Highlights": ["specular", "hardware"],
     "Install": ["packages"],

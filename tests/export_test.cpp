@@ -91,6 +91,20 @@ TEST_F(Export, MultipliesInHalfPrecisionWhereAsked) {
   EXPECT_EQ(exports("--to cpp --area"), 2);
 }
 
+TEST_F(Export, WritesFunctionsThatDrawDirections) {
+  ASSERT_EQ(exports("--to glsl,wgsl,cpp --sample"), 0) << read(folder_ / "said");
+  EXPECT_THAT(read(folder_ / "said"), HasSubstr("two_lobes.sample.glsl: a draw, 24 fetches of 1 texture"));
+  EXPECT_THAT(read(folder_ / "out/two_lobes.sample.wgsl"),
+              HasSubstr("fn burnish_two_lobes_sample(wo: vec3f, u: vec2f)"));
+  EXPECT_THAT(read(folder_ / "out/two_lobes.sample.h"),
+              HasSubstr("unsigned short burnish_two_lobes_sample_cells[]"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/two_lobes.sample.ktx2"));
+  EXPECT_EQ(exports("--to exr,ktx2 --sample"), 2);
+  EXPECT_THAT(read(folder_ / "said"), HasSubstr("found exr, ktx2"));
+  EXPECT_EQ(exports("--to glsl_es,png --binding 1"), 2);
+  EXPECT_THAT(read(folder_ / "said"), HasSubstr("found glsl_es, png"));
+}
+
 TEST_F(Export, NumbersTexturesAsItIsTold) {
   ASSERT_EQ(exports("--to glsl,hlsl,slang,wgsl,dds --binding 4 --set 2 --space 3"), 0)
       << read(folder_ / "said");

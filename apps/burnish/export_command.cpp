@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <burnish/export/export_model.h>
@@ -33,7 +34,7 @@ struct ExportArguments {
   int cells = ExportOptions{}.cells;
   std::optional<int> binding, set, space;
   bool appended = false, exact = false, half = false, plain = false, blocks = false, mips = false,
-       area = false, json = false;
+       area = false, sample = false, json = false;
 };
 
 std::string name_of(const std::string& path) {
@@ -49,6 +50,7 @@ ExportOptions options_of(const ExportArguments& arguments) {
                         .compressed = !arguments.plain,
                         .blocks = arguments.blocks,
                         .area = arguments.area,
+                        .sample = arguments.sample,
                         .cells = arguments.cells,
                         .places = {arguments.binding, arguments.set, arguments.space},
                         .appended = arguments.appended};
@@ -79,14 +81,14 @@ ExportedFiles exported_model(const ExportArguments& arguments, const Source& sou
     throw CLI::ValidationError("--power: expected phong or blinn_phong with it, found a file");
   ExportOptions options = options_of(arguments);
   if (!arguments.environment.empty() && std::ranges::none_of(options.to, shows_environment))
-    throw CLI::ValidationError(fmt::format("--environment: expected --to {} with it, found others",
-                                           targets_that(shows_environment)));
+    throw CLI::ValidationError(fmt::format("--environment: expected --to {} with it, found {}",
+                                           targets_that(shows_environment), names_of(options.to)));
   if (options.half && std::ranges::none_of(options.to, has_half_products))
-    throw CLI::ValidationError(
-        fmt::format("--half: expected --to {} with it, found others", targets_that(has_half_products)));
+    throw CLI::ValidationError(fmt::format("--half: expected --to {} with it, found {}",
+                                           targets_that(has_half_products), names_of(options.to)));
   if (options.area && std::ranges::none_of(options.to, has_half_products))
-    throw CLI::ValidationError(
-        fmt::format("--area: expected --to {} with it, found others", targets_that(has_half_products)));
+    throw CLI::ValidationError(fmt::format("--area: expected --to {} with it, found {}",
+                                           targets_that(has_half_products), names_of(options.to)));
   if (options.name.empty()) options.name = name_of(arguments.model);
   Model model = to_model(source);
   const FactoredBrdf& brdf = model.brdf;
@@ -104,9 +106,11 @@ ExportedFiles exported_surface(const ExportArguments& arguments, const FileBytes
   if (!arguments.power.empty() || !arguments.environment.empty() || arguments.half)
     throw CLI::ValidationError("--power, --environment, --half: expected a model with them, found a surface");
   if (arguments.area) throw CLI::ValidationError("--area: expected a model with it, found a surface");
+  if (arguments.sample) throw CLI::ValidationError("--sample: expected a model with it, found a surface");
   ExportOptions options = options_of(arguments);
   if (arguments.blocks && std::ranges::none_of(options.to, has_map_textures))
-    throw CLI::ValidationError("--blocks: expected --to ktx2 or a shader language with it, found others");
+    throw CLI::ValidationError("--blocks: expected --to ktx2 or a shader language with it, found " +
+                               names_of(options.to));
   if (options.name.empty()) options.name = name_of(arguments.model);
   return export_surface(parse_surface(file).brdf, options);
 }
@@ -130,8 +134,8 @@ void check_numbers(const ExportArguments& arguments) {
                          bool (*has)(ExportTarget target) noexcept) {
     if (!number) return;
     if (std::ranges::none_of(options.to, has))
-      throw CLI::ValidationError(
-          fmt::format("{}: expected --to {} with it, found others", option, targets_that(has)));
+      throw CLI::ValidationError(fmt::format("{}: expected --to {} with it, found {}", option,
+                                             targets_that(has), names_of(options.to)));
     if (!arguments.environment.empty())
       throw CLI::ValidationError(
           fmt::format("{}: expected no --environment with it, found {}", option, arguments.environment));
@@ -139,6 +143,8 @@ void check_numbers(const ExportArguments& arguments) {
   check("--binding", arguments.binding, has_bindings);
   check("--set", arguments.set, has_sets);
   check("--space", arguments.space, has_spaces);
+  if (arguments.sample && std::ranges::none_of(options.to, is_language))
+    throw CLI::ValidationError("--sample: expected a shader language with it, found " + names_of(options.to));
 }
 
 void run(const ExportArguments& arguments) {
@@ -216,6 +222,10 @@ void add_export_command(CLI::App& app) {
       ->excludes(exact);
   verb->add_flag("--area", arguments->area,
                  "Writes functions of area lights too, NAME.area.*, with their own texture; cpp has none.");
+  verb->add_flag(
+      "--sample", arguments->sample,
+      "Writes functions that draw directions too, NAME.sample.*, with their own texture; cpp has it "
+      "inside.");
   constexpr int kMostBindings = 1 << 20;
   verb->add_option(
           "--binding", arguments->binding,
@@ -237,7 +247,8 @@ void add_export_command(CLI::App& app) {
   verb->add_flag("--json", arguments->json, "Prints the files and what shaders cost as JSON.");
   verb->callback([arguments, cells] {
     if (cells->count() > 0 && std::ranges::find(arguments->to, "mdl") == arguments->to.end())
-      throw CLI::ValidationError("--cells: expected --to mdl with it, found others");
+      throw CLI::ValidationError(
+          fmt::format("--cells: expected --to mdl with it, found {}", fmt::join(arguments->to, ", ")));
     run(*arguments);
   });
 }

@@ -6,6 +6,7 @@ Each job of JOBS does what its first lines tell a reader to do, on a small model
 command line's. A job whose tool is missing says so. Ends with 1 where a job fails, and with 77 where all that were asked
 for were skipped. A file of examples/jobs has at most 149 lines, and a job here."""
 import argparse
+import math
 import os
 import pathlib
 import re
@@ -115,6 +116,26 @@ class Jobs:
             found = [float(number) for number in re.search(r"pair 0: (.*)", said).group(1).split()]
             near(found, [0.8 * f for f in self.value((0.6, 0, 0.8), (0, 0, 1))], 2e-6)
 
+    def path_tracer(self):
+        need("g++")
+        folder = self.out / "paths"
+        run(self.burnish, "export", self.model, "--to", "cpp", "--sample", "-o", folder)
+        shutil.copy(EXAMPLES / "path_tracer.cu", folder)
+        run("g++", "-std=c++17", "-O2", "-x", "c++", "path_tracer.cu", "-o", "paths", cwd=folder)
+        said = run("./paths", "4", cwd=folder)
+        mean, *sky = [float(number) for number in re.search(r"mean (\S+)\nsky: (\S+) (\S+) (\S+)", said).groups()]
+        assert 0.1 < mean < 1 and (folder / "path_tracer.ppm").stat().st_size == 96 * 96 * 3 + 13, said
+        # The same share by directions that are even in the cosine: pi times the mean of f.
+        rows = []
+        for i in range(128):
+            for k in range(16):
+                sine, phi = math.sqrt((i + 0.5) / 128), 2 * math.pi * (k + 0.5) / 16
+                rows.append(f"{sine * math.cos(phi)},{sine * math.sin(phi)},{math.sqrt(1 - sine * sine)},0,0,1")
+        asked = "\n".join(["wi_x,wi_y,wi_z,wo_x,wo_y,wo_z", *rows]) + "\n"
+        table = run(self.burnish, "eval", self.model, "-", input=asked)
+        values = [[float(number) for number in row.split(",")[-3:]] for row in table.strip().split("\n")[1:]]
+        near(sky, [math.pi * sum(row[c] for row in values) / len(values) for c in range(3)], 0.01)
+
     def highlight_pipe(self):
         need("iverilog")
         folder = self.out / "highlight"
@@ -124,7 +145,7 @@ class Jobs:
         assert "PASS 400 pixels" in said, said
 
 
-JOBS = ["engine_loop", "webgpu_page", "mitsuba_scene", "slurm_batch", "cuda_kernel", "highlight_pipe"]
+JOBS = ["engine_loop", "webgpu_page", "mitsuba_scene", "slurm_batch", "cuda_kernel", "path_tracer", "highlight_pipe"]
 
 
 def main():

@@ -42,10 +42,12 @@ SLANG_TARGETS = ["spirv", "hlsl", "metal", "wgsl", "glsl", "cuda"]
 
 
 def calls(name, vector):
-    """Both functions of a model, in a language whose vector of three is made by that name."""
+    """All functions of a model, in a language whose vector of three is made by that name."""
     a, b = f"{vector}(0.0, 0.6, 0.8)", f"{vector}(0.0, 0.0, 1.0)"
-    x = f"{vector}(1.0, 0.0, 0.0)"
-    return f"burnish_{name}({a}, {b}) + burnish_{name}_world({b}, {x}, {a}, {b})"
+    x, u = f"{vector}(1.0, 0.0, 0.0)", f"{vector.replace('3', '2')}(0.5, 0.25)"
+    drawn = (f"{vector}(burnish_{name}_sample({b}, {u}).x, burnish_{name}_sample_world({b}, {x}, {b}, {u}).w, "
+             f"burnish_{name}_pdf({a}, {b}) + burnish_{name}_pdf_world({b}, {x}, {a}, {b}))")
+    return f"burnish_{name}({a}, {b}) + burnish_{name}_world({b}, {x}, {a}, {b}) + {drawn}"
 
 
 def fragment_hlsl(name):
@@ -149,20 +151,22 @@ def fitted(burnish, folder):
 
 
 def exported(burnish, folder, models):
-    """Every generated file: (language, way, model, text)."""
+    """Every model's code: (language, way, model, text). What draws directions stands behind what evaluates."""
     files = []
     for name, model in models.items():
         formula = not pathlib.Path(str(model)).exists()
         for way, options in WAYS.items():
-            if formula and way != "filtered":
-                continue  # a formula has no textures, so no filters or places
+            if formula and way not in ("filtered", "placed"):
+                continue  # a formula has no tables to filter
             out = folder / f"{name}_{way}"
-            said = run(burnish, "export", model, "--to", ",".join(LANGUAGES), "--name", name, "-o", out, *options)
+            said = run(burnish, "export", model, "--to", ",".join(LANGUAGES), "--sample", "--name", name, "-o", out,
+                       *options)
             if said:
                 sys.exit(f"{name}, {way}: {said}")
             manifest = json.loads((out / f"{name}.json").read_text())
+            draws = {shader["language"]: shader["file"] for shader in manifest["sample"]["shaders"]}
             for shader in manifest["shaders"]:
-                text = (out / shader["file"]).read_text()
+                text = (out / shader["file"]).read_text() + (out / draws[shader["language"]]).read_text()
                 files.append((shader["language"], way, name, text))
     return files
 
@@ -199,10 +203,7 @@ def by_glslang(table, folder, files):
             spirv.append(out)
         return said
 
-    # Formulas without textures need no places, so that they are Vulkan's too.
     paths = written(folder, files, "glsl", "_vk.frag", ["placed"], "vulkan")
-    paths += [path for path in written(folder, files, "glsl", "_vk.frag", ["filtered"], "vulkan")
-              if path.name.startswith(("coated", "highlight"))]
     table.add("glsl", "glslangValidator, Vulkan", outcomes(paths, vulkan))
     table.add("hlsl", "glslangValidator, HLSL", outcomes(
         written(folder, files, "hlsl", ".hlsl"), lambda path: vulkan(path, "-D", "-e", "main", "-S", "frag")))
@@ -265,7 +266,7 @@ def main():
         by_glslang(table, folder, files)
         by_slang(table, folder, files)
         by_others(table, folder, files)
-        print(f"{len(MODELS)} models, {len(files)} generated files")
+        print(f"{len(MODELS)} models, {2 * len(files)} generated files, two a program")
         table.show()
         return any(failures for *_, failures in table.rows)
 

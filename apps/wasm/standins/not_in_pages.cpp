@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// These functions of the library are not used by pages: surfaces as OpenEXR, maps in blocks, and area lights.
+// These functions of the library are not used by pages: surfaces as OpenEXR, maps in blocks, area lights,
+// and shaders that draw directions.
 #include <burnish/error.h>
+#include <burnish/export/sampler_files.h>
 #include <burnish/image/block_compression.h>
 #include <burnish/lighting/area_light_fit.h>
 #include <burnish/lighting/area_light_shader.h>
@@ -36,6 +38,10 @@ AreaLightTable fit_area_lights(BrdfRef, const AreaLightFitOptions&) {
 AreaLightShader generate_shader(const AreaLightTable&, ShaderLanguage, const std::string&,
                                 const ShaderPlaces&) {
   throw Error("shader: expected no area lights in a page, found some");
+}
+
+void add_sampler(BrdfRef, const ExportOptions&, ExportedFiles&, nlohmann::json&) {
+  throw Error("export: expected no drawing of directions in a page, found some");
 }
 
 }  // namespace burnish

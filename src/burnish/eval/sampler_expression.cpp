@@ -22,8 +22,9 @@ ExprInt operator*(const ExprInt& a, const ExprInt& b) {
 ExprInt min(const ExprInt& a, const ExprInt& b) {
   return ExprInt(min(a.value, b.value));
 }
+// Integers that formulas use again have names, since text writes an integer without a name anew each time.
 ExprInt max(const ExprInt& a, const ExprInt& b) {
-  return ExprInt(max(a.value, b.value));
+  return ExprInt(named("whole", max(a.value, b.value)));
 }
 
 /// a <= b
@@ -37,7 +38,7 @@ Expr if_true(const ExprMask& mask, const Expr& yes, const Expr& no) {
   return if_less(mask.b, mask.a, no, yes);
 }
 ExprInt if_true(const ExprMask& mask, const ExprInt& yes, const ExprInt& no) {
-  return ExprInt(if_true(mask, yes.value, no.value));
+  return ExprInt(named("chosen", if_true(mask, yes.value, no.value)));
 }
 Expr copy_sign(const Expr& size, const Expr& sign) {
   return if_less(sign, 0.0, -abs(size), abs(size));
@@ -49,31 +50,53 @@ Expr to_real(const ExprInt& x) {
   return {Op::to_real, {x.value}};
 }
 ExprInt next_around(const ExprInt& i, int last) {
-  return ExprInt(if_less(i.value, Expr::integer(last), i.value + Expr::integer(1), Expr::integer(0)));
+  return ExprInt(
+      named("next", if_less(i.value, Expr::integer(last), i.value + Expr::integer(1), Expr::integer(0))));
 }
 
-Expr element(const char* table, const ExprInt& i) {
-  return Expr::element(table, i.value, ValueType::integer);
+// A whole number that is computed as a real one, as texels are.
+struct WholeReal {
+  Expr value;
+};
+Expr to_real(const WholeReal& x) {
+  return x.value;
+}
+
+// One of a sampler's two tables: an array, or a texture from a row on.
+struct Edges {
+  std::string name;
+  bool texture;
+  int first_row;
+};
+// Returns an entry of a table: an integer of an array, a real number of a texture.
+Expr element(const Edges& table, const ExprInt& i) {
+  if (!table.texture) return Expr::element(table.name, i.value, ValueType::integer);
+  const Expr width = Expr::integer(kSamplerTextureWidth), at = named("at", i.value),
+             row = named("row", at / width);
+  return Expr::texel(table.name, {at - row * width, row + Expr::integer(table.first_row)}, ValueType::real);
+}
+Expr real_element(const Edges& table, const ExprInt& i) {
+  return table.texture ? element(table, i) : to_real(ExprInt(element(table, i)));
 }
 struct ExprEdges {
-  ExprInt lower, mass;
+  WholeReal lower, mass;
 };
-ExprEdges edge_pair(const char* table, const ExprInt& i) {
-  const Expr lower = element(table, i), upper = element(table, i + ExprInt(1));
+ExprEdges edge_pair(const Edges& table, const ExprInt& i) {
+  const Expr lower = named("lower", real_element(table, i)),
+             upper = named("upper", real_element(table, i + ExprInt(1)));
   const Expr mass = upper - lower;  // modulo 65536
-  return {ExprInt(lower), ExprInt(if_less(upper, lower, mass + Expr::integer(65536), mass))};
+  return {{lower}, {if_less(upper, lower, mass + 65536.0, mass)}};
 }
 // Searches by halves.
 template <int kSlices>
-ExprInt search(const char* table, const ExprInt (&start)[kSlices], const Expr (&weight)[kSlices], int count,
+ExprInt search(const Edges& table, const ExprInt (&start)[kSlices], const Expr (&weight)[kSlices], int count,
                const Expr& target) {
   ExprInt index(0);
   for (int step = count / 2; step > 0; step /= 2) {
     const ExprInt next = index + ExprInt(step);
     Expr edge;
-    for (int s = 0; s < kSlices; ++s)
-      edge = edge + weight[s] * to_real(ExprInt(element(table, start[s] + next)));
-    index = if_true(less_or_equal(edge, target), next, index);
+    for (int s = 0; s < kSlices; ++s) edge = edge + weight[s] * real_element(table, start[s] + next);
+    index = ExprInt(named("index", if_true(less_or_equal(edge, target), next, index).value));
   }
   return index;
 }
@@ -85,35 +108,51 @@ ExprInt search(const char* table, const ExprInt (&start)[kSlices], const Expr (&
 // The tables and numbers that the formulas read.
 struct View : SamplerTables {
   double last_ring, turn_per_row, per_column, cells;
-  const char *row_edges = "row_edges", *cell_edges = "cell_edges";
+  Edges row_edges, cell_edges;
 
-  explicit View(const SamplerTables& tables)
+  View(const SamplerTables& tables, const SamplerArrays& arrays)
       : SamplerTables(tables),
         last_ring(tables.thetas - 1),
         turn_per_row((tables.isotropic ? 2.0 : 4.0) / tables.rows),
         per_column(1.0 / tables.columns),
-        cells(cells_per_unit(tables.rows, tables.columns)) {}
+        cells(cells_per_unit(tables.rows, tables.columns)) {
+    const bool texture = !arrays.texture.empty();
+    const int texture_rows =
+        (static_cast<int>(tables.row_edges.size()) + kSamplerTextureWidth - 1) / kSamplerTextureWidth;
+    row_edges = {texture ? arrays.texture : arrays.row_edges, texture, 0};
+    cell_edges = {texture ? arrays.texture : arrays.cell_edges, texture, texture_rows};
+  }
 };
+
+ExprVector numbers(const std::string& vector) {
+  return {Expr::input(vector + "_x"), Expr::input(vector + "_y"), Expr::input(vector + "_z")};
+}
 
 }  // namespace
 
-DrawnExpr sample_expression(const SamplerTables& tables) {
-  const auto in = [](const char* name) { return Expr::input(name); };
+DrawnExpr sample_expression(const SamplerTables& tables, const ExprVector& wo, const ExprVector& u,
+                            const SamplerArrays& arrays) {
   const auto drawn = [&](auto isotropic) {
-    return draw<isotropic.value, Expr, ExprInt>(View(tables), in("wo_x"), in("wo_y"), in("wo_z"), in("u_x"),
-                                                in("u_y"));
+    return draw<isotropic.value, Expr, ExprInt>(View(tables, arrays), wo.x, wo.y, wo.z, u.x, u.y);
   };
   const Drawn<Expr> wi = tables.isotropic ? drawn(std::true_type()) : drawn(std::false_type());
   return {wi.x, wi.y, wi.z, wi.pdf};
 }
 
-Expr pdf_expression(const SamplerTables& tables) {
-  const auto in = [](const char* name) { return Expr::input(name); };
+DrawnExpr sample_expression(const SamplerTables& tables) {
+  return sample_expression(tables, numbers("wo"), numbers("u"));
+}
+
+Expr pdf_expression(const SamplerTables& tables, const ExprVector& wi, const ExprVector& wo,
+                    const SamplerArrays& arrays) {
   const auto found = [&](auto isotropic) {
-    return density<isotropic.value, Expr, ExprInt>(View(tables), in("wi_x"), in("wi_y"), in("wi_z"),
-                                                   in("wo_x"), in("wo_y"), in("wo_z"));
+    return density<isotropic.value, Expr, ExprInt>(View(tables, arrays), wi.x, wi.y, wi.z, wo.x, wo.y, wo.z);
   };
   return tables.isotropic ? found(std::true_type()) : found(std::false_type());
+}
+
+Expr pdf_expression(const SamplerTables& tables) {
+  return pdf_expression(tables, numbers("wi"), numbers("wo"));
 }
 
 }  // namespace burnish

@@ -13,60 +13,11 @@
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/half_vector_quadrature.h>
 #include <burnish/testing/brdfs.h>
-#include <burnish/testing/models.h>
+#include <burnish/testing/glossy_models.h>
 #include <burnish/testing/sampling.h>
 
 namespace burnish {
 namespace {
-
-// Models whose lobes are sampled well: lines, disks and grids, every warp and kind of projection, one lobe and
-// several.
-const ModelCase kModels[] = {
-    {"Pqp", "pqp", {"p=16", "q=64,rational:0.05"}, 3},
-    {"Pqpr", "pqpr", {"p=16", "q=64", "r=16"}, 3},
-    {"TwoLobes",
-     "p(wo) q(h) r(theta_d) p(wi) + s(wo) t(h) s(wi)",
-     {"p=8", "q=64,rational:0.02", "r=8", "s=8", "t=16"},
-     3},
-    {"Grid", "p(wo) g(theta_h,theta_d) p(wi) + s(wo) s(wi)", {"g=32x8,rational:0.1", "p=8", "s=8,shared"}, 3},
-    {"Volume", "z(theta_h) g(theta_h,theta_d,phi_d)", {"g=28x5x4,power:0.5", "z=32"}, 3},
-    {"Affine", "q(wi+wo+0.4n) v(0.3wi+0.9wo) v(0.9wi+0.3wo) + q(h)", {"q=32", "v=9"}, 1},
-    {"Mirror", "a(m+wo) q(h) b(d)", {"a=16,power:0.5", "q=32", "b=8"}, 3},
-    {"Disks", "pqp", {"p=17x17", "q=33x33,rational:0.2"}, 3},
-    {"DiskAndLine", "p(wo) q(h) p(wi) + s(wo) t(h) s(wi)", {"p=8", "q=33x33,power:0.5", "s=9x9", "t=32"}, 3},
-    {"Twist", "p(wo) q(h) p(wi) w(theta_t,theta_h)", {"p=8", "q=48", "w=5x8"}, 3},
-    {"Side", "z(theta_h) g(theta_h,theta_d,phi_s)", {"g=28x5x7,power:0.5", "z=32"}, 3},
-};
-
-const ModelCase& named(std::string_view name) {
-  return *std::ranges::find(kModels, name, &ModelCase::name);
-}
-
-// A highlight in every table of h, longer along one axis where the table is a disk; slopes elsewhere.
-FactoredBrdf glossy_model(const ModelCase& model) {
-  const ModelSpec spec = parse_model_spec(model.expression, model.options, true);
-  std::vector<Table> tables;
-  for (const ModelSpec::TableSpec& t : spec.tables) {
-    Table table{.name = t.name, .layout = t.layout, .channels = t.shared ? 1 : model.channels, .values = {}};
-    const double steepness = t.name == "q" || t.name == "g" ? 400 : 3;
-    for (int y = 0; y < t.layout.rows(); ++y)
-      for (int x = 0; x < t.layout.width; ++x)
-        for (std::size_t c = 0; c < table.channels; ++c) {
-          const bool angles = projection_count(t.layout.shape) > 1;
-          const Vec3 w = node_direction(t.layout, x, angles ? 0 : y);
-          const double along = w.x + 0.5 * w.y, across = 3 * (w.y - 0.5 * w.x);
-          const double tilt = 0.1 * y / t.layout.height;
-          table.values.push_back(static_cast<float>(
-              -(1 + 0.2 * c) * std::log1p(steepness * (along * along + across * across)) - tilt));
-        }
-    tables.push_back(std::move(table));
-  }
-  std::vector<Lobe> lobes;
-  for (const auto& factors : spec.lobes)
-    lobes.push_back(
-        {.scale = std::vector<double>(model.channels, lobes.empty() ? 0 : -3), .factors = factors});
-  return from_log_tables(model.channels, std::move(tables), std::move(lobes), TableFormat::half);
-}
 
 // Views along the normal, at grazing angles, and between.
 std::vector<Vec3> views(bool isotropic) {
@@ -126,7 +77,7 @@ class TabulatedSamplerTest : public ::testing::TestWithParam<ModelCase> {
 
 TEST_P(TabulatedSamplerTest, DrawsByItsDensity) {
   // Among all draws of the suite, one in a hundred may be worse than this.
-  const int tests = static_cast<int>(std::size(kModels) * views(false).size());
+  const int tests = static_cast<int>(std::size(kGlossyModels) * views(false).size());
   for (const Vec3 wo : wos) {
     const DrawTest test = test_draws(sampler, wo, 20'000, 3);
     EXPECT_GT(test.p_value, level_of_each(0.01, tests)) << degrees(theta_of(wo));
@@ -249,7 +200,7 @@ TEST_P(TabulatedSamplerTest, TurnsWithTheMaterial) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, TabulatedSamplerTest, ::testing::ValuesIn(kModels),
+INSTANTIATE_TEST_SUITE_P(Models, TabulatedSamplerTest, ::testing::ValuesIn(kGlossyModels),
                          [](const auto& model) { return std::string(model.param.name); });
 
 TEST(TabulatedSampler, ServesAnalyticBrdfsOfAnyWidth) {
@@ -328,7 +279,7 @@ TEST(TabulatedSampler, TellsDensitiesOfMirrorDirectionsAtAnyView) {
       z.push_back(up);
     }
   pdf.resize(z.size());
-  const TabulatedSampler sampler(glossy_model(named("Disks")));
+  const TabulatedSampler sampler(glossy_model(glossy_case("Disks")));
   sampler.pdf(DirectionSpans{wi[0], wi[1], z, wo[0], wo[1], z}, pdf);
   for (std::size_t i = 0; i < z.size(); ++i) {
     const double one = sampler.pdf({wi[0][i], wi[1][i], z[i]}, {wo[0][i], wo[1][i], z[i]});
@@ -352,7 +303,7 @@ TEST(TabulatedSampler, SurvivesAnythingInPlaceOfDirections) {
   std::vector<float> in[5];
   std::vector<float> out[4], pdf;
   for (const char* name : {"Pqp", "Disks"}) {
-    const TabulatedSampler sampler(glossy_model(named(name)));
+    const TabulatedSampler sampler(glossy_model(glossy_case(name)));
     for (const double a : odd)
       for (const double b : odd)
         for (const double z : odd) {

@@ -14,6 +14,7 @@
 #include <burnish/export/materialx.h>
 #include <burnish/export/mdl.h>
 #include <burnish/export/nearest_material.h>
+#include <burnish/export/sampler_files.h>
 #include <burnish/export/usda.h>
 #include <burnish/export/web_module.h>
 #include <burnish/fitting/parametric/gltf_json.h>
@@ -302,6 +303,7 @@ ExportedFiles ModelExport::run() && {
   if (textures && options_.mips) add_levels();
 
   if (options_.area) add_area_lights();
+  if (options_.sample) add_sampler(brdf_, options_, result_, manifest_);
 
   // tables in other formats
   const std::string& name = options_.name;
@@ -339,7 +341,8 @@ void check_places_shown(const ExportOptions& options) {
   const auto check = [&](const char* what, const std::optional<int>& number,
                          bool (*has)(ExportTarget target) noexcept) {
     if (number && std::ranges::none_of(options.to, has))
-      throw Error(fmt::format("export: expected {} with a {}, found others", targets_that(has), what));
+      throw Error(fmt::format("export: expected {} with a {}, found {}", targets_that(has), what,
+                              names_of(options.to)));
     if (number && options.environment)
       throw Error(fmt::format("export: expected no environment with a {}, found one", what));
   };
@@ -350,14 +353,14 @@ void check_places_shown(const ExportOptions& options) {
 
 ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& options) {
   if (options.environment && std::ranges::none_of(options.to, shows_environment))
-    throw Error(
-        fmt::format("environment: expected {} with it, found others", targets_that(shows_environment)));
+    throw Error(fmt::format("environment: expected {} with it, found {}", targets_that(shows_environment),
+                            names_of(options.to)));
   if (options.area && std::ranges::none_of(options.to, has_half_products))
-    throw Error(
-        fmt::format("export: expected {} with area lights, found others", targets_that(has_half_products)));
+    throw Error(fmt::format("export: expected {} with area lights, found {}", targets_that(has_half_products),
+                            names_of(options.to)));
   if (options.half && std::ranges::none_of(options.to, has_half_products))
-    throw Error(
-        fmt::format("export: expected {} with half products, found others", targets_that(has_half_products)));
+    throw Error(fmt::format("export: expected {} with half products, found {}",
+                            targets_that(has_half_products), names_of(options.to)));
   check_places_shown(options);
   return ModelExport(brdf, options).run();
 }

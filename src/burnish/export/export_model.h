@@ -21,8 +21,9 @@ struct ExportOptions {
   bool compressed = true;  ///< KTX2 with Zstandard
   bool blocks = false;     ///< KTX2 of a surface's maps as pairs in blocks, and shaders that read these
   bool area =
-      false;       ///< shaders too of area lights, see lighting/area_light_shader.h; their fit takes seconds
-  int cells = 90;  ///< of mdl: along each polar angle, in [2, 1000]; twice as many along the azimuth
+      false;  ///< shaders too of area lights, see lighting/area_light_shader.h; their fit takes seconds
+  bool sample = false;  ///< shaders too that draw directions, see shaders/sampler_shader.h
+  int cells = 90;       ///< of mdl: along each polar angle, in [2, 1000]; twice as many along the azimuth
   /// Numbers of bindings, sets and spaces in shaders; each needs a target that has them.
   ShaderPlaces places = {};
   bool appended = false;     ///< shaders go behind others in a file: without `enable f16` of WGSL
@@ -38,7 +39,7 @@ void check_places_shown(const ExportOptions& options);
 /// has the nearest material of glTF, usda the nearest OpenPBR and core material, which take seconds to find. Throws Error
 /// as generate_shader does, and for:
 /// - an environment that no target shows;
-/// - area lights without a language that has textures;
+/// - area lights without a language that has textures, and drawing without a language;
 /// - half without a language that has it, or with `exact`;
 /// - places that no target has, that are below 0, or with an environment, whose shaders have none;
 /// - glTF of other than 1 or 3 channels.

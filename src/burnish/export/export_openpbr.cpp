@@ -13,6 +13,7 @@
 #include <burnish/export/materialx.h>
 #include <burnish/export/mdl.h>
 #include <burnish/export/nearest_material.h>
+#include <burnish/export/sampler_files.h>
 #include <burnish/export/usda.h>
 #include <burnish/export/web_module.h>
 #include <burnish/fitting/parametric/gltf_json.h>
@@ -109,6 +110,7 @@ ExportedFiles export_openpbr(const AnalyticBrdf& brdf, const ExportOptions& opti
       result.files.push_back(std::move(file));
     }
   }
+  if (options.sample) add_sampler(brdf.ref(), options, result, manifest);
   result.files.push_back(manifest_file(manifest, options.name));
   return result;
 }

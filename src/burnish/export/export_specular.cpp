@@ -6,6 +6,7 @@
 #include <burnish/export/export_specular.h>
 #include <burnish/export/html_page.h>
 #include <burnish/export/manifest.h>
+#include <burnish/export/sampler_files.h>
 #include <burnish/power/choose.h>
 #include <burnish/shaders/specular_shader.h>
 
@@ -63,6 +64,7 @@ ExportedFiles export_specular(const std::string& spec, std::optional<PowerMethod
     result.shaders.push_back({file, std::string(method.name), shader.cost});
     manifest["shaders"].push_back(manifest_entry(*language, options.name, shader));
   }
+  if (options.sample) add_sampler(brdf.ref(), options, result, manifest);
   result.files.push_back(manifest_file(manifest, options.name));
   return result;
 }

@@ -234,8 +234,10 @@ ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& op
     throw Error("environment: expected a model that is the same everywhere, found a surface");
   if (options.half)
     throw Error("export: expected a model that is the same everywhere with half products, found a surface");
+  if (options.sample)
+    throw Error("export: expected a model that is the same everywhere to draw, found a surface");
   if (options.blocks && std::ranges::none_of(options.to, has_map_textures))
-    throw Error("blocks: expected ktx2, dds or a shader language to export, found others");
+    throw Error("blocks: expected ktx2, dds or a shader language to export, found " + names_of(options.to));
   check_places_shown(options);
   for (const ExportTarget target : options.to)
     if (!takes_surfaces(target))

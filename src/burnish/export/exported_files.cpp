@@ -75,6 +75,17 @@ bool shows_environment(ExportTarget target) noexcept {
   return target == ExportTarget::glsl || target == ExportTarget::glsl_es || target == ExportTarget::html;
 }
 
+bool is_language(ExportTarget target) noexcept {
+  return language_of(target).has_value();
+}
+
+std::string names_of(std::span<const ExportTarget> targets) {
+  std::string names;
+  for (const ExportTarget target : targets)
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", to_string(target));
+  return names.empty() ? "none" : names;
+}
+
 std::string targets_that(bool (*are_so)(ExportTarget target) noexcept) {
   std::vector<std::string_view> names;
   for (const bool languages : {true, false})

@@ -57,6 +57,12 @@ bool has_spaces(ExportTarget target) noexcept;
 /// Returns true if the target can show light from all around: glsl, glsl_es and html.
 bool shows_environment(ExportTarget target) noexcept;
 
+/// Returns true if the target is a shader language.
+bool is_language(ExportTarget target) noexcept;
+
+/// Returns the names of targets as messages have them: "exr, glsl_es".
+std::string names_of(std::span<const ExportTarget> targets);
+
 /// Returns the targets for which the predicate holds, languages first, as a sentence has them: "glsl, glsl_es or html".
 std::string targets_that(bool (*are_so)(ExportTarget target) noexcept);
 
