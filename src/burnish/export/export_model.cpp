@@ -317,7 +317,8 @@ ExportedFiles ModelExport::run() && {
   if (wants(ExportTarget::usda))
     manifest_["usda"] = add(name + ".usda", usda_layer(openpbr().parameters, core().material, name));
   if (wants(ExportTarget::mdl)) add_mdl();
-  if (wants(ExportTarget::three)) manifest_["three"] = add(name + ".three.js", three_module(brdf_, name));
+  if (wants(ExportTarget::three))
+    manifest_["three"] = add(name + ".three.js", three_module(brdf_, core().material, name));
   if (wants(ExportTarget::babylon))
     manifest_["babylon"] = add(name + ".babylon.js", babylon_module(brdf_, name));
   if (wants(ExportTarget::rgl)) add_rgl();

@@ -73,7 +73,8 @@ TargetFiles files_of(const AnalyticBrdf& brdf, ExportTarget target, const Export
               .losses = std::move(table.losses)};
     }
     case ExportTarget::three:
-      return {.files = {{name + ".three.js", three_module(material, name)}}};
+      return {.files = {
+                  {name + ".three.js", three_module(material, fit_metallic_roughness(brdf).material, name)}}};
     case ExportTarget::babylon:
       return {.files = {{name + ".babylon.js", babylon_module(material, name)}}};
     case ExportTarget::html:

@@ -4,11 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include <burnish/export/tsl_function.h>
 #include <burnish/export/web.h>
 #include <burnish/export/web_module.h>
+#include <burnish/math/angles.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/analytic/openpbr_expression.h>
 #include <burnish/shaders/openpbr_shader.h>
 #include <burnish/shaders/shader.h>
+#include <burnish/shaders/shader_formula.h>
 #include <burnish/shaders/spatial_shader.h>
 
 namespace burnish {
@@ -38,6 +42,17 @@ json shared(const FactoredBrdf& brdf, const std::string& name, const Shader& sha
 
 std::string module_of(std::string_view script, const json& model) {
   return web_script(script, model.dump(1, ' ', true, json::error_handler_t::replace));
+}
+
+// Writes both materials of three.js: the script that has the model, then the one that makes nodes of its formula.
+std::string both_materials(json model, const MetallicRoughness& core, const Expr& value) {
+  model["color"] = {core.base_color.r, core.base_color.g, core.base_color.b};
+  model["core"] = {{"metalness", core.metallic},
+                   {"roughness", core.roughness},
+                   {"anisotropy", core.anisotropy},
+                   {"anisotropyRotation", core.across ? kPi / 2 : 0.0}};
+  return module_of("three.js", model) + std::string(text_of(web_files(), "three_nodes.js")) +
+         tsl_function(value);
 }
 
 json model_of(const FactoredBrdf& brdf, const std::string& name) {
@@ -72,16 +87,17 @@ json web_model(const OpenPbr& material, const std::string& name) {
                    format_analytic(analytic_openpbr(material.parameters())), name);
 }
 
-std::string three_module(const FactoredBrdf& brdf, const std::string& name) {
-  return module_of("three.js", model_of(brdf, name));
+std::string three_module(const FactoredBrdf& brdf, const MetallicRoughness& core, const std::string& name) {
+  return both_materials(model_of(brdf, name), core,
+                        shader_formula(brdf, {ShaderLanguage::glsl_es, ShaderFilter::hardware, name}).value);
 }
 
 std::string three_module(const SpatialBrdf& surface, const std::string& name) {
   return module_of("three.js", web_model(surface, name));
 }
 
-std::string three_module(const OpenPbr& material, const std::string& name) {
-  return module_of("three.js", web_model(material, name));
+std::string three_module(const OpenPbr& material, const MetallicRoughness& core, const std::string& name) {
+  return both_materials(web_model(material, name), core, openpbr_expression(material));
 }
 
 std::string babylon_module(const FactoredBrdf& brdf, const std::string& name) {

@@ -7,17 +7,19 @@
 
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/reflectance/analytic/openpbr.h>
+#include <burnish/reflectance/metallic_roughness.h>
 #include <burnish/shaders/shader.h>
 #include <burnish/surface/spatial_brdf.h>
 
 namespace burnish {
 
 /// JavaScript modules that make a ShaderMaterial of three.js or Babylon.js, textures inside: web/three.js and
-/// web/babylon.js with the model. A surface brings its maps with their levels; OpenPBR has no textures. Throw Error as
-/// generate_shader does.
-std::string three_module(const FactoredBrdf& brdf, const std::string& name);
+/// web/babylon.js with the model. A surface brings its maps with their levels; OpenPBR has no textures. Those of
+/// three.js but a surface's make a node material too, whose light from all around is that of `core`
+/// (web/three_nodes.js). Throw Error as generate_shader does.
+std::string three_module(const FactoredBrdf& brdf, const MetallicRoughness& core, const std::string& name);
 std::string three_module(const SpatialBrdf& surface, const std::string& name);
-std::string three_module(const OpenPbr& material, const std::string& name);
+std::string three_module(const OpenPbr& material, const MetallicRoughness& core, const std::string& name);
 std::string babylon_module(const FactoredBrdf& brdf, const std::string& name);
 std::string babylon_module(const OpenPbr& material, const std::string& name);
 

@@ -3,12 +3,19 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <burnish/error.h>
+#include <burnish/export/tsl_function.h>
 #include <burnish/export/web.h>
+#include <burnish/export/web_module.h>
+#include <burnish/testing/models.h>
 
 namespace burnish {
 namespace {
+
+using ::testing::HasSubstr;
 
 std::string encoded(std::string_view text) {
   return base64(std::as_bytes(std::span(text)));
@@ -36,6 +43,23 @@ TEST(WebScript, PutsTheModelInItsPlace) {
   const std::string script = web_script("three.js", "{\"here\": 1}");
   EXPECT_NE(script.find("{\"here\": 1}"), std::string::npos);
   EXPECT_EQ(script.find("MODEL"), std::string::npos);
+}
+
+// tests/web/nodes.mjs draws it in Chromium.
+TEST(ThreeModule, MakesBothMaterialsOfAModel) {
+  const std::string text = three_module(smooth_model(model_case("Volume")), {}, "m");
+  EXPECT_THAT(text, HasSubstr("export function createMaterial(THREE)"));
+  EXPECT_THAT(text, HasSubstr("export function createNodeMaterial(THREE)"));
+  EXPECT_THAT(text, HasSubstr("read(\"burnish_m_volumes\", "));
+}
+
+TEST(TslFunction, NamesValuesThatAreUsedAgain) {
+  const ExprVector wi(Expr::input("wi", ValueType::vector)), wo(Expr::input("wo", ValueType::vector));
+  const Expr sum = wi.x + wo.z;
+  const std::string text = tsl_function(sum * sqrt(sum));
+  EXPECT_THAT(text, HasSubstr("= set(\"float\", wi.x.add(wo.z));"));
+  EXPECT_THAT(text, HasSubstr(".sqrt()"));
+  EXPECT_THROW(tsl_function(Expr::texel("t", {0.0, 0.0}, ValueType::real)), Error);
 }
 
 }  // namespace
