@@ -25,7 +25,8 @@ done
 
 "$burnish" fit ggx:alpha_x=0.2,alpha_y=0.35,f0=0.9/0.7/0.4 --model pqp --samples 50000 -o "$web/brushed.exr" > /dev/null
 "$burnish" export "$web/brushed.exr" --to ktx2 --to cube --to exr --to gltf --to three --to babylon --to glsl --environment sun --mips -o "$web/out" > /dev/null
-"$burnish" fit ggx:alpha_x=0.2,alpha_y=0.35,f0=0.9/0.7/0.4 --model "z(theta_h) v(h,d,phi_d)" --table z=24 --table v=12x12x8 --samples 20000 -o "$web/volume.exr" > /dev/null
+"$burnish" fit ggx:alpha_x=0.2,alpha_y=0.35,f0=0.9/0.7/0.4 --model "z(theta_h) v(h,d,phi_d)" --table z=24 \
+  --table v=12x12x8 --samples 20000 -o "$web/volume.exr" > /dev/null
 "$burnish" export "$web/volume.exr" --to three -o "$web/out" > /dev/null
 openpbr=openpbr:base_color=0.6/0.3/0.1,specular_ior=1.7,specular_roughness_anisotropy=0.5,coat_weight=0.25
 openpbr=$openpbr,coat_roughness=0.1,coat_ior=1.5,fuzz_weight=0.3,thin_film_weight=0.5

@@ -1,5 +1,5 @@
-// node nodes.mjs FOLDER NAME...: draws the node materials of NAME.three.js in Chromium, by WebGPURenderer's WebGL and, if
-// Chromium has it, by its WebGPU. NAME.sphere.exr in FOLDER is our renderer's picture of the same sphere.
+// node nodes.mjs FOLDER NAME...: draws the node materials of NAME.three.js in Chromium, by WebGPURenderer's WebGL and,
+// if Chromium has it, by its WebGPU. NAME.sphere.exr in FOLDER is our renderer's picture of the same sphere.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import http from "node:http";
@@ -10,13 +10,18 @@ import {EXRLoader} from "three/examples/jsm/loaders/EXRLoader.js";
 
 const [folder, ...names] = process.argv.slice(2);
 const three = path.join(import.meta.dirname, "node_modules/three/build");
+const addons = path.join(three, "../examples/jsm");
 const kSide = 64, kSamples = 4;  // pixels of --size, and of each --samples along both axes
 
 // The scene of `burnish render --mesh sphere --lights 2,3,4:20`, rows from the bottom. window.draw draws it, and what
-// becomes of it in fog, in a shadow (the screen is beside the picture), and under a white environment without the lamp.
-const page = `<!DOCTYPE html><body><script type="importmap">{"imports": {"three/webgpu": "/three.webgpu.js"}}</script>
+// becomes of it in fog, in a shadow (the screen is beside the picture), under a white environment or a window in place
+// of the lamp, and on the canvas with tone mapping.
+const imports = {"three/webgpu": "/three.webgpu.js", "three": "/three.webgpu.js"};
+const page = `<!DOCTYPE html><body><script type="importmap">${JSON.stringify({imports})}</script>
 <script type="module">
 import * as THREE from "three/webgpu";
+import {RectAreaLightTexturesLib} from "/lights/RectAreaLightTexturesLib.js";
+THREE.RectAreaLightNode.setLTC(RectAreaLightTexturesLib.init());
 const n = ${kSamples}, small = ${kSide}, side = n * small, fov = 0.6;
 const positions = [], tangents = [], indices = [], columns = 256, rows = 128;
 for (let j = 0; j <= rows; ++j)
@@ -37,6 +42,7 @@ camera.position.z = 1.04 / Math.sin(fov / 2);
 // Rows from the bottom, averaged over each pixel's samples.
 async function picture(scene) {
   await renderer.renderAsync(scene, camera);
+  if (!renderer.getRenderTarget()) return [];
   const pixels = await renderer.readRenderTargetPixelsAsync(target, 0, 0, side, side);
   const sum = new Float32Array(3 * small * small), down = renderer.backend.isWebGPUBackend;
   for (let y = 0; y < side; ++y)
@@ -49,12 +55,14 @@ async function picture(scene) {
 
 window.draw = async (name) => {
   const {createNodeMaterial} = await import("/" + name + ".three.js"), shape = new THREE.BufferGeometry();
-  for (const [called, values, width] of [["position", positions, 3], ["normal", positions, 3], ["tangent", tangents, 4]])
+  const attributes = [["position", positions, 3], ["normal", positions, 3], ["tangent", tangents, 4]];
+  for (const [called, values, width] of attributes)
     shape.setAttribute(called, new THREE.BufferAttribute(new Float32Array(values), width));
   shape.setIndex(indices);
   const made = (change, lamp = new THREE.PointLight(0xffffff, 20)) => {
     const scene = new THREE.Scene(), ball = new THREE.Mesh(shape, createNodeMaterial(THREE));
     lamp.position.set(2, 3, 4);
+    lamp.lookAt(0, 0, 0);
     scene.add(lamp, ball);
     change?.(scene, lamp, ball);
     return picture(scene);
@@ -64,7 +72,8 @@ window.draw = async (name) => {
   drawn.spot = await made(null, new THREE.SpotLight(0xffffff, 20));
   drawn.shadow = await made((scene, lamp, ball) => {
     lamp.castShadow = ball.receiveShadow = true;
-    const screen = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), new THREE.MeshBasicNodeMaterial({side: THREE.DoubleSide}));
+    const black = new THREE.MeshBasicNodeMaterial({side: THREE.DoubleSide});
+    const screen = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), black);
     screen.position.copy(lamp.position).multiplyScalar(0.8);
     screen.lookAt(0, 0, 0);
     screen.castShadow = true;
@@ -77,13 +86,29 @@ window.draw = async (name) => {
     scene.environment = white;
     scene.remove(lamp);
   });
+  drawn.window = await made(null, new THREE.RectAreaLight(0xffffff, 10, 2, 2));
+
+  // On the canvas, tone mapping makes one eighth of the light darker than all of it.
+  renderer.setRenderTarget(null);
+  renderer.setSize(small, small, false);
+  renderer.toneMapping = THREE.LinearToneMapping;
+  for (const exposure of [1, 1 / 8]) {
+    renderer.toneMappingExposure = exposure;
+    await made(null);
+    const copy = new OffscreenCanvas(small, small).getContext("2d");
+    copy.drawImage(renderer.domElement, 0, 0);
+    drawn["shown" + exposure] = Array.from(copy.getImageData(0, 0, small, small).data).filter((_, i) => i % 4 < 3);
+  }
+  renderer.toneMapping = THREE.NoToneMapping;
+  renderer.setRenderTarget(target);
   return drawn;
 };
 window.ready = true;
 </script></body>`;
 
 const server = http.createServer((request, response) => {
-  const place = new URL(request.url, "http://x").pathname, from = place.startsWith("/three.") ? three : folder;
+  const place = new URL(request.url, "http://x").pathname;
+  const from = place.startsWith("/three.") ? three : place.startsWith("/lights/") ? addons : folder;
   const file = path.join(from, place);
   response.setHeader("content-type", place === "/" ? "text/html" : "text/javascript");
   if (place === "/") return response.end(page);
@@ -91,17 +116,21 @@ const server = http.createServer((request, response) => {
   response.end(fs.readFileSync(file));
 });
 await new Promise((done) => server.listen(0, done));
-const browser = await chromium.launch({executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox",
-  "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan", "--use-vulkan=swiftshader",
-  "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-vulkan-surface"]});
+const browser = await chromium.launch({executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: [
+  "--no-sandbox", "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan",
+  "--use-vulkan=swiftshader", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-vulkan-surface"]});
 
-const mean = (picture, channel) => picture.reduce((sum, value, i) => sum + (i % 3 === channel ? value : 0), 0) / kSide ** 2;
+const mean = (picture, channel) =>
+  picture.reduce((sum, value, i) => sum + (i % 3 === channel ? value : 0), 0) / kSide ** 2;
 for (const backend of ["webgl", "webgpu"]) {
   const tab = await browser.newPage(), complaints = [];
   tab.on("pageerror", (error) => complaints.push(error.message));
-  tab.on("console", (said) => { if (said.type() === "error" && !said.text().includes("404")) complaints.push(said.text()); });
+  tab.on("console", (said) => {
+    if (said.type() === "error" && !said.text().includes("404")) complaints.push(said.text());
+  });
   await tab.goto(`http://localhost:${server.address().port}/?${backend}`);
-  await tab.waitForFunction(() => window.ready, null, {timeout: 120000}).catch((error) => { throw new Error(`${complaints} ${error}`); });
+  await tab.waitForFunction(() => window.ready, null, {timeout: 120000})
+    .catch((error) => { throw new Error(`${complaints} ${error}`); });
   for (const name of names) {
     const drawn = await tab.evaluate((one) => window.draw(one), name);
     if (backend === "webgpu" && drawn.backend !== "WebGPU") {
@@ -120,12 +149,17 @@ for (const backend of ["webgl", "webgpu"]) {
     console.log(`web: ${name} as nodes by ${drawn.backend}: ${psnr.toFixed(2)} dB`);
     assert.deepEqual(complaints, []);
     assert.ok(psnr >= 40, `${name} by ${drawn.backend}: expected 40 dB, found ${psnr}`);
-    const means = Object.fromEntries(["lit", "fog", "spot", "shadow", "environment"].map((key) =>
+    const pictures = ["lit", "fog", "spot", "shadow", "environment", "window", "shown1", "shown0.125"];
+    const means = Object.fromEntries(pictures.map((key) =>
       [key, [0, 1, 2].map((channel) => mean(drawn[key], channel))]));
     const said = JSON.stringify(means);
     assert.ok(means.lit[0] > 0.01, said);
     assert.ok(means.fog[0] < 1e-3 && means.fog[2] > 0.5, said);
     assert.ok(Math.abs(means.spot[0] / means.lit[0] - 1) < 1e-3 && means.shadow[0] < 0.05 * means.spot[0], said);
+    assert.ok(means.window[0] > 0.01, said);
+    // Headless, Chromium shows nothing of WebGPU on a canvas.
+    if (drawn.backend === "WebGL")
+      assert.ok(means.shown1[0] > 10 && means["shown0.125"][0] < 0.6 * means.shown1[0], said);
     assert.ok(means.environment[0] > 0.05 && means.environment[0] < 1, said);
   }
   await tab.close();
