@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-constexpr int kDraws = 20'000;
+constexpr int kDrawsAView = 20'000;
 
 // A call of a drawing function: wo and two uniform numbers.
 struct Call {
@@ -40,13 +40,13 @@ struct Answer {
   float x, y, z, pdf, pdf_again, weight[3];
 };
 
-// Returns kDraws calls for each of kViews, in floats.
-std::vector<Call> calls() {
+// Returns kDrawsAView calls for each of kViews, in floats.
+std::vector<Call> calls_of_views() {
   std::vector<Call> all;
   const auto in_float = [](double x) { return static_cast<double>(static_cast<float>(x)); };
   for (const Vec3 wo : kViews) {
     Pcg32 random(3);
-    for (int i = 0; i < kDraws; ++i) {
+    for (int i = 0; i < kDrawsAView; ++i) {
       const double x = random.uniform(), y = random.uniform();
       all.push_back({{in_float(wo.x), in_float(wo.y), in_float(wo.z)},
                      {std::min(in_float(x), 0.9999999), std::min(in_float(y), 0.9999999)}});
@@ -87,9 +87,9 @@ void expect_draws(const FactoredBrdf& brdf, const TabulatedSampler& sampler, con
     const HalfVectorBins bins{kViews[v]};
     std::vector<double> expected = bins.integrals(sampler), seen(bins.count());
     const double total = std::accumulate(expected.begin(), expected.end(), 0.0);
-    for (double& e : expected) e *= kDraws;
-    expected.back() = std::max(1 - total, 0.0) * kDraws;
-    for (std::size_t i = v * kDraws; i < (v + 1) * kDraws; ++i)
+    for (double& e : expected) e *= kDrawsAView;
+    expected.back() = std::max(1 - total, 0.0) * kDrawsAView;
+    for (std::size_t i = v * kDrawsAView; i < (v + 1) * kDrawsAView; ++i)
       ++seen[bins.of({{answers[i].x, answers[i].y, answers[i].z}, answers[i].pdf})];
     EXPECT_GE(chi_square_p_value(expected, seen), 1e-3) << v;
   }
@@ -99,7 +99,7 @@ TEST(SamplerShader, DrawsAsTheSamplerOnOpenGl) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const TestContext gl;
   if (!gl.context) GTEST_SKIP() << gl.reason;
-  const std::vector<Call> asked = calls();
+  const std::vector<Call> asked = calls_of_views();
   for (const ModelCase& model : kGlossyModels) {
     SCOPED_TRACE(model.name);
     const FactoredBrdf brdf = glossy_model(model);
@@ -169,7 +169,7 @@ TEST(SamplerShader, DrawsAsTheSamplerInCpp) {
   ASSERT_TRUE(runs(
       fmt::format("cd {} && c++ -std=c++17 -O1 -Wall -Wextra -Werror draw.cpp -o draw", folder.path.string()),
       folder.path / "log"));
-  const std::vector<Call> asked = calls();
+  const std::vector<Call> asked = calls_of_views();
   std::string bytes;
   for (const auto& [wo, u] : asked)
     for (const double x : {wo.x, wo.y, wo.z, u.x, u.y}) {
