@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Per-target include: the loop over spans that the kernels share. A benchmark's plainest kernel uses the same loop.
+// Per-target include: the loop over spans that the kernels share.
 #if defined(BURNISH_EVAL_VECTOR_LOOP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_EVAL_VECTOR_LOOP_INL_H_
 #undef BURNISH_EVAL_VECTOR_LOOP_INL_H_
@@ -15,47 +15,57 @@
 HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
-// The last values, through buffers of one vector filled up with the first of them. Not inlined: vectors
-// cannot stay in registers across the calls that copy a few floats.
-template <int kInputs, class Body>
-HWY_NOINLINE void rest_through_buffers(const float* const (&from)[kInputs], std::size_t begin,
-                                       std::size_t count, float* out, const Body& body) {
-  const D d;
-  const std::size_t width = hn::Lanes(d);
-  for (std::size_t i = begin; i < count; i += width) {
-    const std::size_t rest = std::min(width, count - i);
-    float buffer[hn::MaxLanes(D())];
-    Lane in[kInputs];
-    for (int k = 0; k < kInputs; ++k) {
-      std::fill(buffer, buffer + width, from[k][i]);
-      std::copy(from[k] + i, from[k] + i + rest, buffer);
-      in[k] = Lane(hn::LoadU(d, buffer));
-    }
-    hn::StoreU(body(in).raw, d, buffer);
-    std::copy(buffer, buffer + rest, out + i);
+// Copies `count` values of each input from `begin` on, and fills the rows of `width` floats up with the first of them.
+// The copies are calls shared by all kernels: a kernel with copies of its own would be half as long again.
+HWY_NOINLINE void copy_rest(const float* const* from, int inputs, std::size_t begin, std::size_t count, float* rows,
+                            std::size_t width) {
+  for (int k = 0; k < inputs; ++k, rows += width) {
+    std::fill(rows, rows + width, from[k][begin]);
+    std::copy(from[k] + begin, from[k] + begin + count, rows);
   }
+}
+HWY_NOINLINE void store_rest(const float* row, std::size_t count, float* out) {
+  std::copy(row, row + count, out);
 }
 
 /// Computes out[i] = body(from[0][i], from[1][i], …), a vector at a time, with kUnroll vectors a turn: all loads,
-/// then all stores. Body takes const Lane (&)[kInputs] and holds its constants by value: a copy of it is kept in
-/// registers.
+/// then all stores. The last values are copied, filled up to a whole turn, and take one more turn of the same loop.
+/// Body takes const Lane (&)[kInputs] and holds its constants by value: a copy of it is kept in registers.
 template <int kUnroll, int kInputs, class Body>
 HWY_INLINE void for_each_vector(const float* const (&from)[kInputs], std::size_t count, float* out,
                                 const Body& body) {
   const D d;
-  const std::size_t width = hn::Lanes(d);
-  const Body kept = body;
-  std::size_t i = 0;
-  for (; i + kUnroll * width <= count; i += kUnroll * width) {
-    Lane in[kUnroll][kInputs], result[kUnroll];
-    for (int j = 0; j < kUnroll; ++j)
-      for (int k = 0; k < kInputs; ++k)
-        in[j][k] = Lane(hn::LoadU(d, from[k] + i + static_cast<std::size_t>(j) * width));
-    for (int j = 0; j < kUnroll; ++j) result[j] = kept(in[j]);
-    for (int j = 0; j < kUnroll; ++j)
-      hn::StoreU(result[j].raw, d, out + i + static_cast<std::size_t>(j) * width);
+  constexpr std::size_t kWidth = hn::MaxLanes(D());
+  // Without vectors, more values a turn gain nothing: the processor overlaps turns by itself.
+  constexpr std::size_t kVectors = kWidth == 1 ? 1 : kUnroll;
+  constexpr std::size_t kTurn = kVectors * kWidth;
+  struct Part {
+    const float* from[kInputs];
+    float* out;
+    std::size_t count;
+  };
+  const std::size_t whole = count / kTurn * kTurn;
+  float rest[kInputs + 1][kTurn];  // the result is last
+  Part parts[2] = {{{}, out, whole}, {{}, rest[kInputs], kTurn}};
+  for (int k = 0; k < kInputs; ++k) {
+    parts[0].from[k] = from[k];
+    parts[1].from[k] = rest[k];
   }
-  if (i < count) rest_through_buffers(from, i, count, out, body);
+  // No vector stays in a register across a call, so calls come before and after both parts.
+  const bool has_rest = kTurn > 1 && whole < count;
+  if (has_rest) copy_rest(from, kInputs, whole, count - whole, rest[0], kTurn);
+  const Body kept = body;
+  for (int p = 0; p < 1 + has_rest; ++p) {
+    const Part& part = parts[p];
+    for (std::size_t i = 0; i < part.count; i += kTurn) {
+      Lane in[kVectors][kInputs], result[kVectors];
+      for (std::size_t j = 0; j < kVectors; ++j)
+        for (int k = 0; k < kInputs; ++k) in[j][k] = Lane(hn::LoadU(d, part.from[k] + i + j * kWidth));
+      for (std::size_t j = 0; j < kVectors; ++j) result[j] = kept(in[j]);
+      for (std::size_t j = 0; j < kVectors; ++j) hn::StoreU(result[j].raw, d, part.out + i + j * kWidth);
+    }
+  }
+  if (has_rest) store_rest(rest[kInputs], count - whole, out + whole);
 }
 
 BURNISH_END_TARGET;
