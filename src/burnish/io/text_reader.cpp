@@ -113,7 +113,7 @@ std::string lower_case(std::string_view text) {
 std::string printable(std::string_view text, std::size_t most) {
   std::string kept(text.substr(0, most));
   std::replace_if(
-      kept.begin(), kept.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
+      kept.begin(), kept.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, '?');
   return kept;
 }
 

@@ -263,7 +263,7 @@ std::vector<std::string> comments_of(const FileBytes& file) {
     if (reader.line().starts_with('#')) {
       std::string& comment = comments.emplace_back(reader.line().substr(1, kLongest));
       std::replace_if(
-          comment.begin(), comment.end(), [](char c) { return c >= 0 && c < ' ' && c != '\t'; }, '?');
+          comment.begin(), comment.end(), [](unsigned char c) { return c < ' ' && c != '\t'; }, '?');
     }
   return comments;
 }
