@@ -17,6 +17,7 @@
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/factors/model_spec.h>
+#include <burnish/factors/table_gradient.h>
 #include <burnish/fitting/fit.h>
 #include <burnish/fitting/fit_file.h>
 #include <burnish/fitting/parametric/material_fit.h>
