@@ -6,11 +6,13 @@
 #include <limits>
 #include <vector>
 
+#include <burnish/factors/table_gradient.h>
 #include <burnish/math/parallel.h>
 
 #include "array_like.h"
 #include "opened_brdf.h"
 #include "rows.h"
+#include "table_shape.h"
 
 namespace burnish::python {
 
@@ -127,6 +129,35 @@ nb::object eval_any(const OpenedBrdf& brdf, nb::handle wi, nb::handle wo, const 
              : eval<double>(brdf, array_of<double>(wi, "wi"), array_of<double>(wo, "wo"), out);
 }
 
+// Sums the gradients of all pairs by each value of each table, one array a table. The sum has one order, and so the same
+// bits each time.
+nb::list table_gradient(const OpenedModel& model, nb::handle wi_given, nb::handle wo_given,
+                        nb::handle weights_given) {
+  const FactoredBrdf& brdf = model.brdf();
+  const auto wi_array = array_of<double>(wi_given, "wi"), wo_array = array_of<double>(wo_given, "wo"),
+             weights_array = array_of<double>(weights_given, "weights");
+  auto wi = rows_of<double>(wi_array, "wi", 3), wo = rows_of<double>(wo_array, "wo", 3);
+  auto weights = rows_of<double>(weights_array, "weights", brdf.channels());
+  const std::size_t count = match(wi, wo, weights, "wi, wo and weights");
+  const bool transmits = model.source().findings.transmits();
+  std::vector<std::vector<double>> sum = zero_table_gradient(brdf);
+  {
+    const nb::gil_scoped_release released;
+    std::vector<double> weight(brdf.channels());
+    for (std::size_t i = 0; i < count; ++i) {
+      Vec3 to_viewer = vector_at(wo, i);
+      if (transmits) to_viewer.z = -to_viewer.z;
+      if (!is_direction(vector_at(wi, i)) || !is_direction(to_viewer)) continue;
+      for (std::size_t c = 0; c < weight.size(); ++c) weight[c] = *weights.at(i, c);
+      add_table_gradient(brdf, vector_at(wi, i), to_viewer, weight, sum);
+    }
+  }
+  nb::list arrays;
+  for (std::size_t t = 0; t < sum.size(); ++t)
+    arrays.append(to_numpy(std::move(sum[t]), array_shape(brdf.tables()[t])));
+  return arrays;
+}
+
 // Returns the seconds of one call of FactoredEvaluator::eval in one thread, the best of `repeats`. All arrays are in
 // planes, or all in rows. Python's eval is compared with it.
 double time_eval(const OpenedModel& model, const Array<const float>& wi, const Array<const float>& wo,
@@ -179,6 +210,16 @@ void bind_eval(nb::module_& m) {
       .def("eval", &eval_any, nb::arg("wi").none(), nb::arg("wo").none(), nb::arg("out") = nb::none(),
            nb::sig("def eval(self, wi: numpy.typing.ArrayLike, wo: numpy.typing.ArrayLike, "
                    "out: NDArray | None = None) -> NDArray"));
+  nb::borrow<nb::class_<OpenedModel>>(m.attr("Model"))
+      .def("table_gradient", &table_gradient, nb::arg("wi"), nb::arg("wo"), nb::arg("weights"),
+           nb::sig("def table_gradient(self, wi: numpy.typing.ArrayLike, wo: numpy.typing.ArrayLike, "
+                   "weights: numpy.typing.ArrayLike) -> list[NDArray[numpy.float64]]"),
+           "The derivatives of sum(weights * eval(wi, wo)) by each value of each table, one float64 array a "
+           "table, of\nthe shape of its values.\n\n"
+           "weights: (N, channels) or (channels,). Times Table.values these are the derivatives by the "
+           "values' "
+           "natural\nlogarithms, which with_log_tables takes. Pairs whose wi or wo is no unit vector to 1 % "
+           "add nothing.\nUses one thread; other Python threads go on meanwhile.");
   m.def("_time_eval", &time_eval, nb::arg("model"), nb::arg("wi").noconvert(), nb::arg("wo").noconvert(),
         nb::arg("out"), nb::arg("repeats"));
 }

@@ -19,6 +19,7 @@
 #include <burnish/math/closest_name.h>
 
 #include "opened_brdf.h"
+#include "table_shape.h"
 #include "texts.h"
 
 namespace burnish::python {
@@ -37,16 +38,6 @@ OpenedBrdf* open(const std::string& spec, const OpenOptions& options) {
   Source source = open_source(spec, options);
   if (std::holds_alternative<FactoredBrdf>(source.brdf)) return new OpenedModel(std::move(source));
   return new OpenedBrdf(std::move(source));
-}
-
-// Returns (height, width, channels), and for a volume its depth before them.
-std::vector<std::size_t> array_shape(const Table& table) {
-  std::vector<std::size_t> shape;
-  if (table.layout.shape == TableShape::volume) shape.push_back(static_cast<std::size_t>(table.layout.depth));
-  for (const int side : {table.layout.height, table.layout.width})
-    shape.push_back(static_cast<std::size_t>(side));
-  shape.push_back(table.channels);
-  return shape;
 }
 
 nb::object table_values(nb::handle self) {

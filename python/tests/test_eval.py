@@ -231,6 +231,35 @@ def test_arrays_on_other_devices_are_refused_with_their_owners_words(model):
         model.eval([0, 0, 1], Lent(np.array([0, 0, 1j])))
 
 
+def test_table_gradients_are_difference_quotients(model):
+    wi, wo = hemisphere(30).astype(np.float64), hemisphere(30)[::-1].astype(np.float64)
+    weights = np.random.default_rng(5).normal(size=(30, 3))
+    logs = [np.log(table.values, dtype=np.float64) for table in model.tables]
+    # A model of floats holds tables that are moved a little.
+    exact = model.with_log_tables(logs, format="float")
+    gradients = exact.table_gradient(wi, wo, weights)
+    assert [g.shape for g in gradients] == [table.values.shape for table in model.tables]
+    assert all(g.dtype == np.float64 for g in gradients)
+    for k, (gradient, table) in enumerate(zip(gradients, exact.tables)):
+        along = np.random.default_rng(k).normal(size=gradient.shape)
+        low, high = (
+            (exact.with_log_tables(logs[:k] + [logs[k] + h * along] + logs[k + 1 :]).eval(wi, wo) * weights).sum()
+            for h in (-1e-3, 1e-3)
+        )
+        expected = (gradient * table.values * along).sum()
+        size = np.abs(exact.eval(wi, wo) * weights).sum()
+        assert abs((high - low) / 2e-3 - expected) < 1e-3 * abs(expected) + 1e-4 * size
+    # One weight stands for all pairs, one direction for all, and one pair adds what it adds among others.
+    for got, one in zip(exact.table_gradient(wi, wo[0], weights[0]),
+                        exact.table_gradient(wi, np.tile(wo[:1], (30, 1)), np.tile(weights[:1], (30, 1)))):
+        np.testing.assert_array_equal(got, one)
+    parts = [exact.table_gradient(wi[i], wo[i], weights[i]) for i in range(30)]
+    for k, gradient in enumerate(gradients):
+        np.testing.assert_allclose(sum(part[k] for part in parts), gradient, rtol=1e-9, atol=1e-12)
+    with pytest.raises(burnish.Error, match=r"^weights: expected shape \(N, 3\) or \(3,\), found \(30, 2\)$"):
+        model.table_gradient(wi, wo, weights[:, :2])
+
+
 def test_draws_have_the_density_that_pdf_states(model, ggx):
     rng = np.random.default_rng(3)
     for source in (model, ggx):
