@@ -17,8 +17,8 @@ BURNISH_BEGIN_TARGET;
 
 // Copies `count` values of each input from `begin` on, and fills the rows of `width` floats up with the first of them.
 // The copies are calls shared by all kernels: a kernel with copies of its own would be half as long again.
-HWY_NOINLINE void copy_rest(const float* const* from, int inputs, std::size_t begin, std::size_t count, float* rows,
-                            std::size_t width) {
+HWY_NOINLINE void copy_rest(const float* const* from, int inputs, std::size_t begin, std::size_t count,
+                            float* rows, std::size_t width) {
   for (int k = 0; k < inputs; ++k, rows += width) {
     std::fill(rows, rows + width, from[k][begin]);
     std::copy(from[k] + begin, from[k] + begin + count, rows);

@@ -62,8 +62,7 @@ TEST(TableGradient, OfLogarithmsAddsUpToTheValueTimesTheUsesOfTheTable) {
     const double f = weighted(brdf, pair, weight);
     for (std::size_t t = 0; t < 2; ++t) {
       double sum = 0;
-      for (std::size_t i = 0; i < gradient[t].size(); ++i)
-        sum += gradient[t][i] * brdf.tables()[t].values[i];
+      for (std::size_t i = 0; i < gradient[t].size(); ++i) sum += gradient[t][i] * brdf.tables()[t].values[i];
       EXPECT_NEAR(sum, (brdf.tables()[t].name == "p" ? 2 : 1) * f, 1e-12 * f);
     }
   }
