@@ -49,8 +49,9 @@ Uncertain uncertain_of(const Source& source) {
   if (const KrigedNodes* function = scattered ? scattered->kriged() : nullptr) return {function, nullptr};
   const MeasuredNodes nodes = measured_nodes(source);
   try {
-    auto own = std::make_unique<const KrigedNodes>(nodes, choose_covariance(nodes));
-    return {own.get(), std::move(own)};
+    Uncertain made{nullptr, std::make_unique<const KrigedNodes>(nodes, choose_covariance(nodes))};
+    made.function = made.own.get();
+    return made;
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", source.name, error.what()));
   }
