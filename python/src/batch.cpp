@@ -85,26 +85,27 @@ void bind_batch(nb::module_& m) {
       "A running batch. Iterating over it yields a dictionary for each material as soon as it is done.")
       .def("__iter__", [](nb::handle self) { return nb::borrow(self); })
       .def("__next__", &next_of);
-  m.def("batch", &batch, nb::arg("materials"), nb::arg("folder"), nb::kw_only(),
-        nb::arg("to") = std::vector<std::string>(), nb::arg("exact") = false, nb::arg("mips") = false,
-        nb::arg("compressed") = true, nb::arg("compact") = true, nb::arg("resume") = false,
-        nb::arg("threads") = 0, nb::arg("memory") = 0, nb::arg("studio") = BatchOptions().studio,
-        nb::arg("keep_spectral") = false, nb::arg("illuminant") = "E", nb::arg("has_cosine") = false,
-        nb::arg("clamp_negatives") = true, nb::arg("back_side") = false, nb::arg("has_cosine_o") = false,
-        nb::arg("brf") = false, nb::arg("part") = "", nb::arg("band") = "", nb::arg("scale_to_tis") = false,
-        nb::arg("how"), nb::rv_policy::take_ownership,
-        "Fits a library as `burnish batch` does, and yields a dictionary for each material once it is done.\n"
-        "A dictionary has name, argument, files, bytes, fetches, psnr and more, or reason where the fit\n"
-        "failed. Its entry earlier is True where an earlier run did the material. The table of figures and\n"
-        "the page are written after the last material. A batch that was stopped continues with resume=True.\n"
-        "\n"
-        "materials: a folder, the path of a list, or arguments of open_source. The batch passes\n"
-        "keep_spectral, illuminant, has_cosine, clamp_negatives, back_side, has_cosine_o, brf, part, band and\n"
-        "scale_to_tis on to open_source.\n"
-        "to: exports, named as for export; exact, mips and compressed apply to them.\n"
-        "compact: writes .burnish files; False writes OpenEXR files with notes.\n"
-        "memory: the most bytes that the batch may use; 0 is four fifths of the memory.\n"
-        "All other options are those of fit.");
+  m.def(
+      "batch", &batch, nb::arg("materials"), nb::arg("folder"), nb::kw_only(),
+      nb::arg("to") = std::vector<std::string>(), nb::arg("exact") = false, nb::arg("mips") = false,
+      nb::arg("compressed") = true, nb::arg("compact") = true, nb::arg("resume") = false,
+      nb::arg("threads") = 0, nb::arg("memory") = 0, nb::arg("studio") = BatchOptions().studio,
+      nb::arg("keep_spectral") = false, nb::arg("illuminant") = "E", nb::arg("has_cosine") = false,
+      nb::arg("clamp_negatives") = true, nb::arg("back_side") = false, nb::arg("has_cosine_o") = false,
+      nb::arg("brf") = false, nb::arg("part") = "", nb::arg("band") = "", nb::arg("scale_to_tis") = false,
+      nb::arg("how"), nb::rv_policy::take_ownership,
+      "Fits a library as `burnish batch` does, and yields a dictionary for each material once it is done.\n"
+      "A dictionary has name, argument, files, bytes, fetches, psnr and more, or reason where the fit\n"
+      "failed. Its entry earlier is True where an earlier run did the material. The table of figures and\n"
+      "the page are written after the last material. A batch that was stopped continues with resume=True.\n"
+      "\n"
+      "materials: a folder, the path of a list, or arguments of open_source. The batch passes\n"
+      "keep_spectral, illuminant, has_cosine, clamp_negatives, back_side, has_cosine_o, brf, part, band and\n"
+      "scale_to_tis on to open_source.\n"
+      "to: exports, named as for export; exact, mips and compressed apply to them.\n"
+      "compact: writes .burnish files; False writes OpenEXR files with notes.\n"
+      "memory: the most bytes that the batch may use; 0 is four fifths of the memory.\n"
+      "All other options are those of fit.");
 }
 
 }  // namespace burnish::python

@@ -9,7 +9,7 @@ import {zip} from "./zip.js";
 const languages = {glsl: "GLSL 4.50", glsl_es: "GLSL ES 3.00", hlsl: "HLSL", slang: "Slang", wgsl: "WGSL", msl: "Metal", cpp: "C++"};
 const modelFiles = {burnish: ".burnish", model: "OpenEXR", ktx2: "KTX2 textures", three: "three.js", babylon: "Babylon.js", html: "Page", gltf: "glTF",
                     materialx: "MaterialX", usda: "USD", mdl: "MDL"};
-// What OpenPBR goes to without a fit, besides shaders.
+// The files that OpenPBR goes to without a fit, besides shaders.
 const openPbrFiles = {materialx: "MaterialX", usda: "USD", gltf: "glTF", three: "three.js", babylon: "Babylon.js", html: "Page"};
 const surfaceFiles = {burnish: ".burnish", ktx2: "KTX2 textures", png: "PNG maps", three: "three.js", html: "Page", gltf: "glTF"};
 // Formats of any material, and the endings of names.

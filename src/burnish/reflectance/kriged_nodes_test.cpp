@@ -94,7 +94,7 @@ TEST(KrigedNodes, GoOnRisingTowardsTheHorizonAsMeasured) {
                without = rise_missed_at_horizon(0.8, 0);
   EXPECT_LT(std::abs(with), 0.4);
   EXPECT_GT(without, 2 * std::abs(with));
-  // What does not rise stays level.
+  // A source that does not rise stays level.
   EXPECT_NEAR(rise_missed_at_horizon(0, LogCovariance(true).grazing), 0, 0.02);
 }
 
