@@ -28,11 +28,12 @@ std::shared_ptr<UnitArguments> add_unit_options(CLI::App& sub) {
   auto arguments = std::make_shared<UnitArguments>();
   std::string methods, units;
   for (const UnitInfo& info : unit_methods())
-    methods += fmt::format("{}{} ({}-{} clocks)", methods.empty() ? "" : ", ", info.name, info.min_depth,
-                           info.max_depth);
+    methods +=
+        fmt::format("{}{} ({}-{})", methods.empty() ? "" : ", ", info.name, info.min_depth, info.max_depth);
   for (const ShippedUnit& unit : shipped_units())
     units += (units.empty() ? "" : ", ") + std::string(unit.name);
-  sub.add_option("--method", arguments->method, "Computes the power by this method: " + methods + ".")
+  sub.add_option("--method", arguments->method,
+                 "Computes the power by this method (with its clocks): " + methods + ".")
       ->capture_default_str();
   sub.add_option("--cos-bits", arguments->config.cosine_bits, "Gives the input this many fraction bits.")
       ->capture_default_str();
@@ -45,8 +46,7 @@ std::shared_ptr<UnitArguments> add_unit_options(CLI::App& sub) {
   sub.add_option("--input", arguments->input, "Takes a cosine c, or a versine v = 1 - c.")
       ->check(one_of({"cosine", "versine"}))
       ->capture_default_str();
-  sub.add_option("--unit", arguments->shipped,
-                 "Takes a configuration of hw/ instead of the options above: " + units + ".");
+  sub.add_option("--unit", arguments->shipped, "Takes a unit of hw/ instead of options: " + units + ".");
   return arguments;
 }
 

@@ -201,7 +201,7 @@ Lines notes_lines(const std::string& notes) {
 }
 
 std::string ending_text(const std::string& reason) {
-  if (reason == "iteration limit") return "the limit";
+  if (reason == "iteration limit") return "all that were planned";
   return reason;
 }
 

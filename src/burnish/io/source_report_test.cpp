@@ -54,7 +54,7 @@ TEST(SourceReport, WarnsOfMoreReflectedThanReceived) {
     return report_of(white_table(value, options))["warnings"].get<std::vector<std::string>>();
   };
   EXPECT_THAT(warnings(0.9, {}),
-              testing::Contains(testing::HasSubstr("More is reflected than received: 283 %")));
+              testing::Contains(testing::HasSubstr("More light is reflected than received: 283 %")));
   EXPECT_THAT(warnings(0.9, {.brf = true}), testing::IsEmpty());
   EXPECT_THAT(warnings(0.9 / kPi, {}), testing::IsEmpty());
 }

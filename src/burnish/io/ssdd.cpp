@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,6 +25,7 @@ namespace burnish {
 
 namespace {
 
+constexpr double kMostSsddValue = 1e30;  // colours made linear stay floats
 constexpr std::size_t kMaxSsddAngles = 65536, kMaxSsddValues = std::size_t{1} << 26;
 
 /// Lines and numbers of a file that is text up to DATA, and text or floats after it.
@@ -176,8 +176,8 @@ void read_ssdd_values(SsddReader& reader, SsddBlock& block, bool binary) {
     block.values.resize(count);
     std::memcpy(block.values.data(), bytes.data(), bytes.size());
     for (const float value : block.values)
-      if (!(std::abs(value) <= std::numeric_limits<float>::max()))
-        reader.fail("finite values", fmt::format("{}", value));
+      if (!(std::abs(value) <= kMostSsddValue))
+        reader.fail(fmt::format("values up to {:g}", kMostSsddValue), fmt::format("{:g}", value));
     return;
   }
   while (block.values.size() < count) {
@@ -187,8 +187,8 @@ void read_ssdd_values(SsddReader& reader, SsddBlock& block, bool binary) {
     for (std::size_t c = 0; c < block.channels(); ++c) {
       const std::string_view word = reader.word();
       const auto value = parse_number(word);
-      if (!value || std::abs(*value) > std::numeric_limits<float>::max())
-        reader.fail(fmt::format("a line of {} finite values", block.channels()),
+      if (!value || !(std::abs(*value) <= kMostSsddValue))
+        reader.fail(fmt::format("a line of {} values up to {:g}", block.channels(), kMostSsddValue),
                     word.empty() ? "fewer" : in_quotes(word));
       block.values.push_back(static_cast<float>(*value));
     }

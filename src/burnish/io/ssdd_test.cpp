@@ -127,7 +127,7 @@ TEST(Ssdd, SaysWhatIsWrong) {
   EXPECT_THAT(error("PARAM3_LIST 0 90", "PARAM3_LIST 0 180"), HasSubstr("PARAM3_LIST in [0, 90]"));
   EXPECT_THAT(error("half_difference", "spherical"), HasSubstr("reciprocity with half_difference"));
   EXPECT_THAT(error("PARAM0_LIST 0 90", "PARAM0_LIST 0 0"), HasSubstr("rising numbers"));
-  EXPECT_THAT(error("1 2 3\n.1", "1 2\n.1"), HasSubstr("a line of 3 finite values"));
+  EXPECT_THAT(error("1 2 3\n.1", "1 2\n.1"), HasSubstr("a line of 3 values up to 1e+30"));
   EXPECT_THAT(error("1 2 3\n.1", "1 2 3 4\n.1"), HasSubstr("'4' behind them"));
   EXPECT_THAT(error("DATA_TYPE specular_reflectance", "DATA_TYPE brdf"), HasSubstr("PARAM_TYPE"));
 }
