@@ -74,7 +74,7 @@ def test_a_batch_opens_the_part(sheet, tmp_path, cli):
     assert through.eval(WI, BELOW) == pytest.approx(0.03, rel=0.02)
     (tmp_path / "list").write_text(str(sheet))
     cli("batch", tmp_path / "list", "-o", tmp_path / "cli", "--part", "transmission-back", "--band", "visible",
-        "--model", "pqp", "--samples", "2000", "--plain")
+        "--model", "pqp", "--samples", "2000")
     assert made.read_bytes() == (tmp_path / "cli" / row["files"][0]["path"]).read_bytes()
     (missing,) = burnish.batch([str(sheet)], tmp_path / "missing", part="reflection-back", **how)
     assert "expected part reflection-back" in missing["reason"]
