@@ -8,6 +8,7 @@
 
 #include <burnish/io/convert_compare.h>
 #include <burnish/math/luminance.h>
+#include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/statistics.h>
 
 namespace burnish {
