@@ -55,7 +55,9 @@ std::vector<AlbedoAt> reported_albedos(const Source& source) {
 
 /// Returns the direct share that a file states, linear between its angles.
 double stated_direct(std::span<const DirectShare> stated, double theta_i) noexcept {
-  const auto above = std::ranges::upper_bound(stated, theta_i, {}, &DirectShare::theta_i);
+  const auto above =
+      std::upper_bound(stated.begin(), stated.end(), theta_i,
+                       [](double angle, const DirectShare& share) { return angle < share.theta_i; });
   if (above == stated.begin()) return above->share;
   const DirectShare& low = *(above - 1);
   if (above == stated.end()) return low.share;

@@ -469,7 +469,7 @@ SsddFile parse_ssdd(const FileBytes& file, const OpenOptions& options) {
   for (const SsddBlock& other : blocks) {
     if (&other == &block) continue;
     std::string what(kSsddTypes[static_cast<std::size_t>(other.type)]);
-    std::ranges::replace(what, '_', ' ');
+    std::replace(what.begin(), what.end(), '_', ' ');
     findings.left_out.push_back(other.is_function() ? lower_case(what) : what);
     if (other.type ==
         (findings.transmits() ? SsddType::specular_transmittance : SsddType::specular_reflectance))
@@ -479,7 +479,7 @@ SsddFile parse_ssdd(const FileBytes& file, const OpenOptions& options) {
   const bool is_table =
       block.params == SsddParams::specular || (block.params == SsddParams::spherical && table.isotropic());
   std::string system(kSsddParams[static_cast<std::size_t>(*block.params)]);
-  std::ranges::replace(system, '_', ' ');
+  std::replace(system.begin(), system.end(), '_', ' ');
   constexpr std::string_view kColours[] = {"Monochrome.", "RGB, taken as linear Rec. 709.",
                                            "XYZ became linear Rec. 709 for a D65 white.", "Spectra."};
   findings.conventions.insert(findings.conventions.begin(),
