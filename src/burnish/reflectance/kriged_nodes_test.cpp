@@ -61,6 +61,33 @@ TEST(KrigedNodes, PredictAnisotropicSources) {
   EXPECT_LT(mean_log_error(source, kriged(samples)), 0.03);
 }
 
+TEST(KrigedNodes, PriorCovariancesAreThoseOfLogCovariance) {
+  // One node of next to no weight determines nothing.
+  Samples samples{.channels = 1, .isotropic = true};
+  samples.pairs.push_back({{0, 0, 1}, {0, 0, 1}});
+  samples.values.push_back(0.2);
+  MeasuredNodes nodes = measured_nodes(samples);
+  nodes.weights[0] = 1e-12;
+  const LogCovariance covariance(true);
+  const KrigedNodes function(nodes, covariance, true);
+  const auto pairs = draw_pairs(200, 5, true);
+  const DirectionPair one{spherical_direction(1.53, 0), spherical_direction(0.7, 2)};
+  std::vector<double> found(pairs.size());
+  function.covariances_with(one, pairs, found);
+  const TreePoint a = place_of(one.wi, one.wo, true);
+  const double grazing = grazing_measure(one.wi, one.wo);
+  ASSERT_GT(grazing, 1);
+  int grazed = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const TreePoint b = place_of(pairs[i].wi, pairs[i].wo, true);
+    const double other = grazing_measure(pairs[i].wi, pairs[i].wo);
+    grazed += other > 0;
+    const double expected = covariance.between(a, b) + covariance.grazing_between(a, grazing, b, other);
+    EXPECT_NEAR(found[i], expected, 1e-5 * covariance.variance(grazing));
+  }
+  EXPECT_GT(grazed, 10);
+}
+
 /// The mean of ln(f / f^) where one cosine is 0.02, of f = (cos theta_i cos theta_o)^-exponent measured from a cosine of
 /// 0.06 on.
 double rise_missed_at_horizon(double exponent, double grazing) {

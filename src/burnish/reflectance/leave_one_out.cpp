@@ -21,21 +21,6 @@ constexpr auto kFew = static_cast<int>(LeaveOneOut::kPredicting);
 using FewSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kFew, kFew>;
 using FewColumn = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kFew, 1>;
 
-/// Returns the covariance of two places [Rasmussen 2006, eq. 4.17], as LogCovariance states it.
-double covariance_between(const LogCovariance& covariance, const TreePoint& a, const TreePoint& b) noexcept {
-  double sum = covariance.level * covariance.level;
-  for (std::size_t t = 0; t < LogCovariance::kTerms; ++t) {
-    double r2 = 0;
-    for (std::size_t k = 0; k < LogCovariance::kAxes; ++k) {
-      const double d = (a[k] - b[k]) * covariance.inverse_length[t][k];
-      r2 += d * d;
-    }
-    const double r = LogCovariance::kRoot3 * std::sqrt(r2);
-    sum += covariance.spread[t] * covariance.spread[t] * (1 + r) * std::exp(-r);
-  }
-  return sum;
-}
-
 }  // namespace
 
 LeaveOneOut::LeaveOneOut(const Samples& samples, bool isotropic)
@@ -82,9 +67,9 @@ LeaveOneOut::Miss LeaveOneOut::miss(std::size_t i, std::span<const std::uint8_t>
     return places_[near[static_cast<std::size_t>(k)].place];
   };
   for (Eigen::Index a = 0; a < n; ++a) {
-    for (Eigen::Index b = 0; b < a; ++b) matrix(a, b) = covariance_between(covariance_, place(a), place(b));
+    for (Eigen::Index b = 0; b < a; ++b) matrix(a, b) = covariance_.between(place(a), place(b));
     matrix(a, a) = covariance_.variance() + noise2;
-    towards[a] = covariance_between(covariance_, place(a), places_[i]);
+    towards[a] = covariance_.between(place(a), places_[i]);
   }
   // The weights are K^-1 k, and the variance of the difference is k(x, x) + noise - k^T K^-1 k [Rasmussen 2006, eq.
   // 2.26].

@@ -98,20 +98,9 @@ Likelihood likelihood_of(const LogMeasurements& measured, std::span<const std::s
     return parts;
   };
 
-  // The grazing term has no parameters here. It is 0 unless both places are near the horizon.
+  // The grazing term has no parameters here.
   const auto grazing = [&](Eigen::Index i) {
     return measured.grazing.empty() ? 0.0 : measured.grazing[block[static_cast<std::size_t>(i)]];
-  };
-  const auto grazing_term = [&](Eigen::Index i, Eigen::Index j) {
-    const double both = grazing(i) * grazing(j);
-    if (both == 0) return 0.0;
-    double r2 = 0;
-    for (std::size_t k = 0; k < kAxes; ++k) {
-      const double d = (place(i)[k] - place(j)[k]) * covariance.grazing_inverse_length[k];
-      r2 += d * d;
-    }
-    const double r = LogCovariance::kRoot3 * std::sqrt(r2);
-    return covariance.grazing * covariance.grazing * both * (1 + r) * std::exp(-r);
   };
 
   // K is filled with the covariances. Each term's spread^2 exp(-sqrt(3) r) is kept for the derivatives.
@@ -120,7 +109,7 @@ Likelihood likelihood_of(const LogMeasurements& measured, std::span<const std::s
   for (Eigen::MatrixXd& of_term : decay) of_term.resize(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
     for (Eigen::Index i = j; i < n; ++i) {
-      double sum = level2 + grazing_term(i, j);
+      double sum = level2 + covariance.grazing_between(place(i), grazing(i), place(j), grazing(j));
       for (std::size_t t = 0; t < kTerms; ++t) {
         const TreePoint d2 = squares(i, j, t);
         const double r = LogCovariance::kRoot3 * std::sqrt(d2[0] + d2[1] + d2[2] + d2[3]);

@@ -35,6 +35,36 @@ LogCovariance::LogCovariance(bool isotropic) noexcept
     if (of_exponent[k] > 0) grazing_inverse_length[k] = 1 / of_exponent[k];
 }
 
+namespace {
+
+/// Returns the Matern function of smoothness 3/2 of the distance of two places [Rasmussen 2006, eq. 4.17].
+double matern(const std::array<double, LogCovariance::kAxes>& inverse_length,
+              const std::array<double, LogCovariance::kAxes>& a,
+              const std::array<double, LogCovariance::kAxes>& b) noexcept {
+  double r2 = 0;
+  for (std::size_t k = 0; k < LogCovariance::kAxes; ++k) {
+    const double d = (a[k] - b[k]) * inverse_length[k];
+    r2 += d * d;
+  }
+  const double r = LogCovariance::kRoot3 * std::sqrt(r2);
+  return (1 + r) * std::exp(-r);
+}
+
+}  // namespace
+
+double LogCovariance::between(const std::array<double, kAxes>& a,
+                              const std::array<double, kAxes>& b) const noexcept {
+  double sum = level * level;
+  for (std::size_t t = 0; t < kTerms; ++t) sum += spread[t] * spread[t] * matern(inverse_length[t], a, b);
+  return sum;
+}
+
+double LogCovariance::grazing_between(const std::array<double, kAxes>& a, double grazing_a,
+                                      const std::array<double, kAxes>& b, double grazing_b) const noexcept {
+  const double both = grazing_a * grazing_b;
+  return both == 0 ? 0 : grazing * grazing * both * matern(grazing_inverse_length, a, b);
+}
+
 double LogCovariance::variance() const noexcept {
   double sum = level * level;
   for (const double of_term : spread) sum += of_term * of_term;

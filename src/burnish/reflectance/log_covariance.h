@@ -42,6 +42,12 @@ struct LogCovariance {
     return variance() + grazing * grazing * grazing_measure * grazing_measure;
   }
 
+  /// Returns the covariance of ln f at two places away from the horizon, in the coordinates above.
+  double between(const std::array<double, kAxes>& a, const std::array<double, kAxes>& b) const noexcept;
+  /// Returns what the grazing term adds, given the grazing measures of the places.
+  double grazing_between(const std::array<double, kAxes>& a, double grazing_a,
+                         const std::array<double, kAxes>& b, double grazing_b) const noexcept;
+
   friend bool operator==(const LogCovariance&, const LogCovariance&) = default;
 };
 
