@@ -19,9 +19,9 @@ struct LogUncertainty {
   double function = 0, reading = 0;
 };
 
-/// A function through measured points: ln(f + 1e-3) at a pair of directions is the best linear prediction from
-/// kNeighbours near nodes under a covariance (kriging). It is as rough as the points are, tends to their mean far
-/// from them, and gives its uncertainty.
+/// A function through measured nodes: ln(f + 1e-3) at a pair of directions is the best linear prediction from the
+/// nearest kNeighbours nodes under a covariance (kriging). The function is as rough as the nodes are, tends to their
+/// mean far from them, and gives its uncertainty. Near the horizon it goes on rising as the last nodes do.
 /// Pairs share the neighbours of the nearest centre, one of at most kCentres nodes, so a pair costs kNeighbours
 /// covariances. Nodes nearer to the horizon are taken as noisier; a node's weight divides the variance of its noise.
 /// Values lie between 0 and twice the largest node's.
@@ -35,7 +35,7 @@ class KrigedNodes {
   static constexpr std::size_t kCentres = 1 << 13, kCalibrating = 32;
 
   /// Throws Error where none of the nodes has both cosines above kLeastCosine.
-  /// With `few_pairs` nothing is prepared for sharing, and eval takes each pair's own neighbours.
+  /// With `few_pairs` nothing is prepared for sharing, and eval takes each pair's own kFewPairsNeighbours nodes.
   KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covariance, bool few_pairs = false);
 
   std::size_t channels() const noexcept { return measured_.channels; }

@@ -88,8 +88,8 @@ TEST(KrigedNodes, PriorCovariancesAreThoseOfLogCovariance) {
   EXPECT_GT(grazed, 10);
 }
 
-/// The mean of ln(f / f^) where one cosine is 0.02, of f = (cos theta_i cos theta_o)^-exponent measured from a cosine of
-/// 0.06 on.
+/// Returns the mean of ln(f / prediction) where one cosine is 0.02. f = (cos theta_i cos theta_o)^-exponent is measured
+/// at cosines from 0.06 on.
 double rise_missed_at_horizon(double exponent, double grazing) {
   const auto rise = [exponent](Vec3 wi, Vec3 wo) { return 0.1 * std::pow(wi.z * wo.z, -exponent); };
   Samples samples{.channels = 1, .isotropic = true};

@@ -15,7 +15,8 @@ constexpr Lengths kIsotropicLengths{{{0.4, 0, 0, 0}, {0.7, 0.7, 0, 0}, {0.4, 0.9
 constexpr Lengths kAnisotropicLengths{{{0.4, 0.4, 0, 0}, {0, 0, 0.7, 0.7}, {0.5, 0.5, 0.9, 0.9}}};
 constexpr double kUsualLevel = 2, kUsualSpread = 1.5, kUsualNoise = 0.06;
 
-// Exponents of the cosines: most BRDFs lie between f alone (0) and f cos (1) being finite at the horizon.
+// Standard deviation of the exponent. Most BRDFs have exponents from 0, where f is finite at the horizon, to 1, where
+// f cos is.
 constexpr double kUsualGrazing = 0.5;
 constexpr std::array<double, LogCovariance::kAxes> kIsotropicGrazing{1, 1.4, 3, 0},
     kAnisotropicGrazing{1, 1, 1.4, 1.4};

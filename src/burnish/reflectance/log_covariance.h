@@ -16,10 +16,11 @@ namespace burnish {
 /// its terms see the first, the first two, and all three. Coordinates of an anisotropic one are even in the exchange:
 ///   the half vector at radius sqrt(tan(theta_h/2)), the difference vector at radius tan(theta_d/2) and twice its
 ///   azimuth; its terms see the half vector, the difference vector, and both.
-/// Near the horizon BRDFs rise by a power of the cosines, and instruments stop before it. A last term lets the exponent
-/// vary slowly from place to place, so that the rise that was measured goes on beyond the last measurement:
-///   grazing^2 g(a) g(b) m(|a - b|_grazing),   g the grazing measure below.
-/// Source: [Rasmussen 2006, eq. 4.17]; a term that is linear in g with a coefficient that varies is eq. 2.39 times it.
+/// Near the horizon BRDFs rise by a power of the cosines, and instruments stop before the horizon. The grazing term lets
+/// the exponent vary slowly from place to place. So a rise that was measured goes on beyond the last measurement:
+///   grazing^2 g(a) g(b) m(|a - b|_grazing),   g(a) the grazing measure of the directions at a.
+/// Sources: [Rasmussen 2006, eq. 4.17] for m; the grazing term is the basis function g of eq. 2.39 with a coefficient
+/// that has the covariance grazing^2 m.
 struct LogCovariance {
   static constexpr std::size_t kTerms = 3, kAxes = 4;
   static constexpr double kRoot3 = 1.7320508075688772;
@@ -33,10 +34,10 @@ struct LogCovariance {
   /// One inverse length for each term and coordinate; 0 where the term does not see it.
   std::array<std::array<double, kAxes>, kTerms> inverse_length{};
   double grazing;  ///< standard deviation of the exponent of the cosines near the horizon, >= 0
-  std::array<double, kAxes> grazing_inverse_length{};  ///< of the exponent
+  std::array<double, kAxes> grazing_inverse_length{};  ///< of the exponent, along each coordinate
   double noise;  ///< standard deviation of a measured ln f of weight 1, > 0
 
-  /// Returns the variance of ln f where nothing is measured, away from the horizon or at a grazing measure.
+  /// Returns the variance of ln f where nothing is measured: away from the horizon, or at a grazing measure.
   double variance() const noexcept;
   double variance(double grazing_measure) const noexcept {
     return variance() + grazing * grazing * grazing_measure * grazing_measure;
@@ -51,8 +52,8 @@ struct LogCovariance {
   friend bool operator==(const LogCovariance&, const LogCovariance&) = default;
 };
 
-/// Returns the grazing measure of directions above the horizon: the sum over both of ln(0.2 / cos), at least 0 and at
-/// most that of a cosine of 0.005, so values stay bounded at the horizon.
+/// Returns the grazing measure of directions above the horizon: the sum over both of ln(0.2 / cos), 0 for a cosine above
+/// 0.2. A cosine below 0.005 counts as 0.005, so values stay bounded at the horizon.
 double grazing_measure(Vec3 wi, Vec3 wo) noexcept;
 
 }  // namespace burnish
