@@ -75,7 +75,7 @@ module burnish_exact #(
   burnish_cut #(.Width(10)) i_exponent (
     .clk_i, .advance_i(advance), .data_i(exponent_i), .data_o(exponent_q)
   );
-  // v = 1 reads as the beyondst v below it, whose output is 0 as well
+  // v = 1 reads as the largest v below it, whose output is 0 as well
   burnish_input #(.CosineBits(CosineBits), .Versine(Versine)) i_input (
     .clk_i, .advance_i(advance), .input_i, .cosine_o(cosine), .versine_o(versine), .zero_o(zero)
   );

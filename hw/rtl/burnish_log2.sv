@@ -1,12 +1,12 @@
 // -log2(1 - rest) for rest in [0, 1/2): Q-1.RestBits+1 in, Q0.LogBits out, below 1 and never falling.
 // With SlopeBits > 0: one table look-up and a product with its slope, added to rest itself. Words of the table: start,
 // and slope in the low bits (SlopeBits - 1 fraction bits).
-// Without slopes: 2 rest, a word of the table, and the low bits of rest within a cell, counted from their largest value,
-// times 72/128, and 1/128 of the low bits. So the slope within a cell is 185/128, near 1/ln 2. Words: start, negative,
-// without its leading ones, in steps of 2^(WordBits + 3 - LogBits) of the last place.
+// Without slopes: the sum of 2 rest, a word of the table, (largest - low) 72/128 and low / 128. Here low has the low
+// bits of rest within a cell, and largest is their largest value. So the slope within a cell is 185/128, near 1/ln 2.
+// Words of the table: start, negative, without its leading ones, in steps of 2^(WordBits + 3 - LogBits) of the last
+// place.
 // Latency: 1 for the table's register, and one more for each bit of Cuts: bit 0 behind the product or the first
-// adders, bit 1 behind the sum, bit 2 behind the table's word, bit 3 within the product or
-// the sum.
+// adders, bit 1 behind the sum, bit 2 behind the table's word, bit 3 within the product or the sum.
 module burnish_log2 #(
   parameter int RestBits  = 14,
   parameter int LogBits   = 19,

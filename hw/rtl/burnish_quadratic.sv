@@ -1,4 +1,5 @@
-// One of 64 quadratics: start - fall t + bend t^2, t in [0, 1) the low bits of x_i. Both products are cut.
+// One of 64 quadratics: start - fall t + bend t^2, where t in [0, 1) is the low bits of x_i. Both products are
+// truncated.
 // Words of the table: start (ValueBits), fall (FallBits) and, in the low bits, bend (BendBits, 0 for none), in steps of
 // the last place of value_o.
 // Latency: the number of bits set in Cuts: bit 0 behind the products with t, 1 behind the product with t^2, 2 behind

@@ -231,11 +231,11 @@ bool takes_surfaces(ExportTarget target) noexcept {
 
 ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& options) {
   if (options.environment)
-    throw Error("environment: expected a model that is the same everywhere, found a surface");
+    throw Error("environment: expected a model with it, found a surface");
   if (options.half)
-    throw Error("export: expected a model that is the same everywhere with half products, found a surface");
+    throw Error("export: expected a model with half products, found a surface");
   if (options.sample)
-    throw Error("export: expected a model that is the same everywhere to draw, found a surface");
+    throw Error("export: expected a model with functions that draw directions, found a surface");
   if (options.blocks && std::ranges::none_of(options.to, has_map_textures))
     throw Error("blocks: expected ktx2, dds or a shader language to export, found " + names_of(options.to));
   check_places_shown(options);

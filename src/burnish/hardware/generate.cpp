@@ -504,7 +504,7 @@ std::vector<BlinnVector> blinn_vectors(const SpecularUnit& unit, int count, std:
 std::vector<GeneratedFile> generate_blinn(const SpecularUnit& unit, const std::string& name, int vectors) {
   check_name(name);
   if (unit.config().method != exact || unit.config().input != UnitInput::versine)
-    throw Error("Blinn's front end: expected the exact unit with versines as input");
+    throw Error("Blinn's front end: expected the exact unit with versines as input, found another unit");
   const std::string head = first_line("//", unit, " --blinn");
   const std::vector<BlinnVector> golden = blinn_vectors(unit, vectors);
   std::string words;
@@ -522,7 +522,7 @@ std::vector<GeneratedFile> generate_blinn(const SpecularUnit& unit, const std::s
 
 std::vector<GeneratedFile> generate_axis(const SpecularUnit& unit, const std::string& name, int vectors) {
   check_name(name);
-  if (unit.config().method != exact) throw Error("AXI4-Stream: expected the exact unit");
+  if (unit.config().method != exact) throw Error("AXI4-Stream: expected the exact unit, found another unit");
   const std::string head = first_line("//", unit, " --axis");
   const std::vector<Port> inputs = unit_inputs(unit.config());
   std::vector<GeneratedFile> files = surround(head, name, axis_wrapper(unit, name), unit.tables());
