@@ -473,7 +473,7 @@ Converted written(const Source& source, std::string_view name, const ConvertOpti
   return format.write(source, options, left_behind(source, source.findings, format));
 }
 
-/// Returns true if a reader's words about what it left out mean this block.
+/// Returns true if a reader's phrase for something left out means this block.
 bool means_block(std::string_view words, const BsdfBlock& block) {
   const std::string_view direction = window_direction(block.part);
   return words == to_string(block) || words == to_string(block.part) || same_name(words, direction) ||
@@ -481,8 +481,8 @@ bool means_block(std::string_view words, const BsdfBlock& block) {
          words == (is_transmission(block.part) ? "transmission" : "reflection");
 }
 
-/// Returns what files of this format have no place for, of all parts together. Parts that stand in the list
-/// themselves are not lost.
+/// Returns what files of this format have no place for, of all parts together. A block that one part left out is not
+/// lost if another part is that block.
 Losses left_behind(std::span<const Source> parts, const Format& format) {
   Losses all;
   for (const Source& part : parts) {

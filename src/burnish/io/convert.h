@@ -20,7 +20,9 @@ struct ConvertOptions {
       100'000;  ///< samples drawn for "astm", "csv" and "openmaterial" if the source is not scattered
   std::uint64_t seed = 1;  ///< seed of these samples
   bool entries = false;    ///< write every known entry of a table instead of drawing samples
-  int cells = 90;  ///< along each polar angle of "merl", "mbsdf" and "exr"; twice as many along the azimuth
+  /// Cells along each polar angle of "merl", "mbsdf" and "exr", twice as many along the azimuth. convert says what they
+  /// mean for "tensortree" and "klems".
+  int cells = 90;
   bool notes = false;  ///< keep the fit's notes in "burnish"
 };
 
@@ -40,9 +42,9 @@ inline constexpr double kFarFromSource = 0.2;
 /// are sampled at the nodes of the format:
 /// - MERL and slices: 90 x 90 x 180 half/difference cells;
 /// - MBSDF: 90 x 90 x 180 angle cells;
-/// - Klems XML: means over the 145 x 145 patches of the full basis, which keep each patch's energy, over the 41 x 41 of
-///   the quarter basis below 45 `cells`;
-/// - Speos, Zemax, UTIA, RGL: the nodes of speos_layout, zemax_layout, utia_layout and RglOptions{};
+/// - Klems XML: means over pairs of patches, which keep each patch's energy; 145 x 145 of the full basis, below 45
+///   `cells` 41 x 41 of the quarter basis;
+/// - Speos, Zemax, UTIA and RGL: the nodes of speos_layout, zemax_layout, utia_layout and RglOptions{};
 /// - tensor tree: cells, 32 along each axis of its squares, fewer below 64 `cells`; cubes whose values agree
 ///   within 0.1 % become one.
 ///
@@ -57,8 +59,8 @@ inline constexpr double kFarFromSource = 0.2;
 /// entries of a source that has none.
 Converted convert(const Source& source, std::string_view format, const ConvertOptions& options = {});
 
-/// Converts several parts of one surface into one file. Throws Error if the format holds one part alone, or the same
-/// part and band comes twice, and as convert does.
+/// Converts several parts of one surface into one file, each as convert does. Throws Error if the format holds one part
+/// alone. Throws it too if one part and band come twice, and as convert does.
 Converted convert_parts(std::span<const Source> parts, std::string_view format,
                         const ConvertOptions& options = {});
 

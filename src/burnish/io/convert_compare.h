@@ -11,7 +11,7 @@
 
 namespace burnish {
 
-/// Pairs that a conversion is compared at.
+/// The number of pairs at which a conversion is compared with its source.
 inline constexpr std::size_t kComparedPairs = 2000;
 
 /// The luminance of an RGB source, the value of a grey one.
@@ -23,10 +23,10 @@ struct Luminance {
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };
 
-/// Returns the figure `relative` over the pairs that both sides know; nothing if there are none.
+/// Returns the figure `relative` over `count` drawn pairs where both BRDFs are known; nothing if there are none.
 std::optional<double> relative_difference(BrdfRef a, BrdfRef b, std::size_t count);
 
-/// Returns true if the channels differ at any pair.
+/// Returns true if the channels differ at any of the drawn pairs.
 bool has_colour(BrdfRef brdf);
 
 /// Returns the name that the source has in its file, or its file's name without folders.

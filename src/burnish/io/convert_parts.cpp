@@ -25,15 +25,15 @@ namespace {
 
 constexpr double kTreeTolerance = 1e-3;  // relative; cubes whose values agree within it become one
 
-/// Returns the block of a window system's file that the source came from. Other sources become Radiance's front. They
-/// stand in the visible spectrum, as the luminance of a colour does.
+/// Returns the part and band that the source came from. A source without a part becomes Radiance's front,
+/// reflection-back. Without a band it is Visible, and so is the luminance of the band CIE-XYZ.
 BsdfBlock window_block(const Source& source) {
   BsdfBlock block = source.findings.block.value_or(BsdfBlock{BsdfPart::reflection_back, {}});
   if (block.band.empty() || block.band == kColourBand) block.band = "Visible";
   return block;
 }
 
-/// The parts that become one file, and what is said of them.
+/// Converts parts of one surface into one file, and collects losses and warnings.
 class PartsConverter {
  public:
   PartsConverter(std::span<const Source> parts, const ConvertOptions& options, Losses losses)
@@ -56,7 +56,7 @@ class PartsConverter {
         PatchBasis incident = outgoing;
         incident.first_azimuth = kPi;
         tables.push_back(patch_means(grey, std::move(incident), outgoing));
-        sampled(part, fmt::format("the means over {0} x {0} patches", outgoing.size()), grey, tables.back());
+        sampled(part, fmt::format("{0} x {0} patches, by their means", outgoing.size()), grey, tables.back());
       }
       blocks.push_back({&tables.back(), own_block(part)});
     }
@@ -121,7 +121,7 @@ class PartsConverter {
   }
 
  private:
-  /// Returns the part's name in front of what is said of it, where there are several.
+  /// Returns the part's name as the prefix of its messages if there are several parts.
   std::string prefix(const Source& part) const {
     return parts_.size() > 1 ? to_string(part.findings.block.value_or(BsdfBlock{})) + ": " : "";
   }
@@ -154,7 +154,7 @@ class PartsConverter {
     return block;
   }
 
-  /// Notes that a part was sampled anew, and how far it is from the source.
+  /// Notes that a part was sampled anew, and how far the result is from the source.
   void sampled(const Source& part, const std::string& where, BrdfRef source, BrdfRef made) {
     if (part.samples()) made_.losses.push_back(prefix(part) + "scattered samples interpolated");
     const auto difference = relative_difference(source, made, kComparedPairs);

@@ -42,12 +42,13 @@ bool looks_like_speos(std::string_view text) noexcept;
 /// `.anisotropicbsdf` of version 11, but against no `.brdf` file. Source: [Ansys 2024].
 SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options);
 
-/// Returns frame and axes of the files that burnish makes, without values. Incidences stand every 5 degrees up to 85, in
-/// anisotropic ones every 10 up to 80 and at 85. Thetas are 2.5 degrees apart, azimuths 5, in anisotropic ones 10.
+/// Returns frame and axes of the files that burnish makes, without values. Isotropic files have incidences every 5
+/// degrees up to 85, anisotropic ones every 10 degrees up to 80 and at 85. Thetas are 2.5 degrees apart, azimuths 5, or
+/// 10 if anisotropic.
 AngleTable speos_layout(bool isotropic);
 
-/// Returns true if a Speos file can hold the table as it is: one channel, angles about the normal, isotropic, azimuths
-/// of the whole circle or of half of it.
+/// Returns true if a Speos file can hold the table as it is: one channel, angles about the normal, isotropic, and
+/// azimuths of the whole circle or of half of it.
 bool fits_speos(const AngleTable& table) noexcept;
 
 /// The tables that become the parts of a file; nullptr if a part is missing.
@@ -56,9 +57,9 @@ struct SpeosParts {
   const AngleTable* transmission = nullptr;
 };
 
-/// Returns the `.anisotropicbsdf` that holds the parts, of which there is one. Values are f, holes are 0. The spectrum
-/// of each part is flat, and states what the values at the least incidence integrate to. Reading the file back gives
-/// the values to the last bit. Precondition: each table has the normal frame, one channel and no half circle unless it
+/// Returns the `.anisotropicbsdf` that holds the parts. Values are f, holes are 0. The spectrum of each part is flat,
+/// and states what the values at the least incidence integrate to. Reading the file back gives the values to the last
+/// bit. Preconditions: there is a part; each table has the normal frame and one channel, and no half circle unless it
 /// is folded.
 std::string format_speos(const SpeosParts& parts, std::string_view comment);
 
