@@ -79,7 +79,7 @@ void add_open_options(CLI::App& verb, OpenOptions& options) {
   verb.add_option("--band", options.band,
                   "Reads this band of a file that has several, such as Visible, Solar, NIR or CIE-XYZ.");
   verb.add_flag("--scale-to-tis", options.scale_to_tis,
-                "Scales each incidence of a Zemax file to the integral that its TIS states.");
+                "Scales each incidence of a Zemax or LightTools file to the integral that its TIS states.");
 }
 
 }  // namespace burnish::cli

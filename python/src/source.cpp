@@ -248,18 +248,18 @@ void bind_source(nb::module_& m) {
       "\n"
       "keep_spectral: keeps one channel for each wavelength, instead of linear Rec. 709.\n"
       "illuminant: the light under which spectra become RGB: \"E\", \"D50\", \"D65\", \"A\" or a file.\n"
-      "has_cosine: CSV values are f_r cos(theta_i).\n"
-      "has_cosine_o: CSV values are f_r cos(theta_o).\n"
-      "brf: CSV values are pi f_r.\n"
+      "has_cosine: CSV and ASTM values are f_r cos(theta_i).\n"
+      "has_cosine_o: CSV and ASTM values are f_r cos(theta_o).\n"
+      "brf: CSV and ASTM values are pi f_r.\n"
       "clamp_negatives: sets interpolated values below zero to zero.\n"
-      "back_side: takes the reflection of the back from Klems files.\n"
+      "back_side: takes the back's reflection from a file with several parts.\n"
       "part: \"reflection-front\", \"reflection-back\", \"transmission-front\" or \"transmission-back\" of a "
       "file\n"
       "with several parts.\n"
       "band: \"Visible\", \"Solar\", \"NIR\", \"CIE-XYZ\", ... of a file with several bands. info() lists "
       "parts\n"
       "and bands.\n"
-      "scale_to_tis: scales each incidence of Zemax files to its TIS.");
+      "scale_to_tis: scales each incidence of Zemax and LightTools files to its TIS.");
 }
 
 }  // namespace burnish::python

@@ -5,7 +5,8 @@
 Takes the files of the folders (seeds that make_seeds writes, real measurements) and some that the program makes. It
 damages them one by one in one of several ways, and gives each to a verb that reads such files. The program has to end
 with 0 or 1. With 1 it says one line besides warnings, which names the file unless a fit failed, and leaves nothing
-behind. With 0 it has written what it was to write. All of it takes below 1 GB and 5 s of the processor. Whatever does not is told, kept in --keep, and the end is 1.
+behind. With 0 it has written its output. A run takes below 1 GB and 5 s of the processor. Files that break these rules
+are listed and kept in --keep, and the exit status is 1.
 """
 import argparse
 import collections

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# arm64.sh [SUITE] makes a bare Debian (trixie) by debootstrap and in it, by Debian's cross compiler and libraries of
-# arm64, the command line and the unit tests of a clean checkout of HEAD. It runs the unit tests of evaluation and ten
-# outputs by qemu-user. It prints a table of these outputs beside those of BURNISH, this machine's command line
-# (build/release/apps/burnish/burnish). A failed test and a difference beyond the limits of outputs.py are faults.
+# arm64.sh [SUITE] makes a bare Debian (default trixie) by debootstrap. In it Debian's cross compiler and libraries of
+# arm64 build the command line and the unit tests of a clean checkout of HEAD. qemu-user runs the unit tests of
+# evaluation and ten outputs. A table has these outputs beside those of BURNISH, this machine's command line (default
+# build/release/apps/burnish/burnish). A failed test and a difference beyond the limits of outputs.py are faults.
 # BURNISH_SYSTEMS=DIR keeps the bare system and the logs. JOBS says how many compilers run. Needs root.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/../.." && pwd)

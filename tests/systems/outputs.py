@@ -17,7 +17,7 @@ import tempfile
 import time
 
 # Output, the arguments of burnish (@ is the output; without it the output is what burnish prints), and the largest
-# difference of numbers, of those above 1 a share of the number; 0 asks for the same bits.
+# difference of two numbers, relative if they exceed 1; 0 asks for the same bits.
 EXACT, ROUNDED, FITTED = 0.0, 1e-9, 0.02
 OUTPUTS = [
     ("satin.csv", "measure satin -o @ --count 3000 --noise 0.05 --seed 7", ROUNDED),

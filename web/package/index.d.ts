@@ -26,21 +26,21 @@ export interface OpenOptions extends LongCall {
   spectral?: boolean;
   /** The light under which spectra become RGB; by default E. */
   illuminant?: "E" | "D50" | "D65" | "A";
-  /** CSV values are f_r cos(theta_i), which is divided out. */
+  /** CSV and ASTM values are f_r cos(theta_i), which is divided out. */
   hasCosine?: boolean;
-  /** CSV values are f_r cos(theta_o), which is divided out. */
+  /** CSV and ASTM values are f_r cos(theta_o), which is divided out. */
   hasCosineO?: boolean;
-  /** CSV values are reflectance factors, which are divided by pi. */
+  /** CSV and ASTM values are reflectance factors, which are divided by pi. */
   brf?: boolean;
   /** True by default: interpolated values below zero become zero. */
   clampNegatives?: boolean;
-  /** Takes the back side of Klems files and tensor trees. */
+  /** Takes the back's reflection from a file with several parts. */
   back?: boolean;
   /** The part of a file with several parts and bands, which the entry parts of info lists. A transmission's wo is
    * mirrored through the surface. */
   part?: "reflection-front" | "reflection-back" | "transmission-front" | "transmission-back";
   band?: string;
-  /** Scales each incidence of Zemax files to its TIS. */
+  /** Scales each incidence of Zemax and LightTools files to its TIS. */
   scaleToTis?: boolean;
   /** The name of one of several materials in a file (a book, neural encodings); by default the first. */
   entry?: string;

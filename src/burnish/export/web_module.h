@@ -14,9 +14,9 @@
 namespace burnish {
 
 /// JavaScript modules that make a ShaderMaterial of three.js or Babylon.js, textures inside: web/three.js and
-/// web/babylon.js with the model. A surface brings its maps with their levels; OpenPBR has no textures. Those of
-/// three.js but a surface's make a node material too, whose light from all around is that of `core`
-/// (web/three_nodes.js). Throw Error as generate_shader does.
+/// web/babylon.js with the model. A surface brings its maps with their levels; OpenPBR has no textures. Modules of
+/// three.js also make a node material (web/three_nodes.js), except for a surface; `core` reflects the light from all
+/// around. Throw Error as generate_shader does.
 std::string three_module(const FactoredBrdf& brdf, const MetallicRoughness& core, const std::string& name);
 std::string three_module(const SpatialBrdf& surface, const std::string& name);
 std::string three_module(const OpenPbr& material, const MetallicRoughness& core, const std::string& name);

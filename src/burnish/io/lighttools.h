@@ -21,8 +21,8 @@ bool looks_like_lighttools(std::string_view text) noexcept;
 
 /// Reads a LightTools BSDF (`.bsdf`). The header has ScatterAzimuth and ScatterRadial, degrees of azimuth and polar
 /// angle about the normal. Each block has its AOI, side, type, wavelength and TIS, and a value for each azimuth and
-/// polar angle, azimuths slowest. Blocks of BRDF and BTDF on both sides are the four parts; several wavelengths are
-/// bands ("550 nm"), which have to be asked for where the first is not the one.
+/// polar angle, azimuths slowest. Blocks of BRDF and BTDF on both sides are the four parts. Several wavelengths are
+/// bands ("550 nm"): the first is read unless options.band names another.
 ///
 /// The light comes from azimuth 90 degrees, so the mirror direction, or straight on, is at 270. Azimuths of one half
 /// are symmetric about the plane of incidence. Values are f without the cosine. XYZ becomes linear Rec. 709 for a D65

@@ -19,7 +19,7 @@ struct OpenOptions {
   bool brf = false;              ///< CSV and ASTM values are reflectance factors, pi f_r: divide by pi
   std::optional<BsdfPart> part = {};  ///< empty: a reflection if there is one, the front's first
   std::string band = {};              ///< a band's name in any case; empty: the visible one first
-  bool scale_to_tis = false;          ///< Zemax: scale each incidence to the integral that its TIS states
+  bool scale_to_tis = false;          ///< Zemax, LightTools: scale each incidence to its TIS
 };
 
 }  // namespace burnish

@@ -12,10 +12,10 @@ namespace {
 // relative precision of v. That part is linear in r plus a table; the product with e, exact and then cut,
 // splits into whole octaves, a shift, and a fraction whose power of two is a table with slopes.
 //
-// With 8 bits, -log2(1 - r) is 2 r, a table over the leading bits of r, and -9/16 + 1/128 of the bits below. The slope
-// 185/128 within a cell is near 1/ln 2, which counts where r is small and e is large. The table holds no more than the
-// bump of a binary logarithm, so its words are narrow. A c below 2^-8 needs no octaves: the unit takes c down to 2^-9
-// as 2^-8, and a smaller one as 0.
+// With 8 bits, -log2(1 - r) is the sum of 2 r, a table over the leading bits of r, and (1/128 - 9/16) times the bits
+// below. So the slope within a cell is 185/128, near 1/ln 2, which counts where r is small and e is large. The table
+// holds no more than the bump of a binary logarithm, so its words are narrow. A c below 2^-8 needs no octaves: the unit
+// takes c from 2^-9 on as 2^-8, and a smaller c as 0.
 //
 // Each step never falls as v rises, tables included, so the output never rises with v.
 class ExactCore final : public UnitCore {
@@ -73,13 +73,13 @@ class ExactCore final : public UnitCore {
  private:
   int low_bits() const noexcept { return f_ - 1 - log_index_bits_; }  // of r within a table cell
 
-  /// The leading `count` bits of v, or of a remainder, are ones.
+  /// Returns true if the leading `count` bits of v, or of a remainder, are ones.
   bool ones(std::uint64_t v, int count) const noexcept {
     return v >> (f_ - count) == power_of_two(count) - 1;
   }
 
-  // The part without table is r itself where slopes do the rest. Otherwise it is 2 r, and 1/128 of the low bits of r
-  // within a cell, and 72/128 of their distance from the largest value.
+  // The part without a table is r itself if the table has slopes. Otherwise it is the sum of 2 r, 1/128 of the low bits
+  // of r within a cell, and 72/128 of their distance from their largest value.
   std::uint64_t linear(std::uint64_t r) const noexcept {
     const std::uint64_t x = r << (log_bits_ - f_);
     if (wide_) return x;

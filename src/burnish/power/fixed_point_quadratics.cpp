@@ -11,7 +11,8 @@ namespace {
 constexpr int kSegmentBits = 6;  // 64 segments
 constexpr std::size_t kSegments = std::size_t{1} << kSegmentBits;
 
-// start - (fall t >> .) + (bend t^2 >> .) for t in [0, 1) of `low_bits` bits within a segment: a falling convex function.
+// A falling convex function: start - (fall t >> .) + (bend t^2 >> .) for t in [0, 1) of `low_bits` bits within a
+// segment.
 struct QuadraticTable {
   int value_bits, low_bits, fall_bits, bend_bits, square_bits;
   std::array<std::uint64_t, kSegments> start{}, fall{}, bend{};

@@ -9,7 +9,7 @@ namespace burnish {
 
 namespace {
 
-constexpr double kNarrow = 2;  // direct light is so many times brighter than what surrounds it
+constexpr double kNarrow = 2;  // direct light is more than this many times as bright as its surroundings
 constexpr double kCone = radians(5), kAround = radians(10);
 constexpr int kDirectionsAround = 16;
 

@@ -19,8 +19,8 @@ struct LightShares {
 /// its excess over the largest of them.
 LightShares light_shares(const PatchTable& table, Vec3 wi, std::size_t channel = 0) noexcept;
 
-/// The same of a tree. A cone of 5 degrees around the mirror direction stands in place of the patch, directions
-/// 10 degrees from its axis in place of the patches around. Trees of up to 7 halvings are summed exactly.
+/// Returns the same of a tree. A cone of 5 degrees around the mirror direction stands in place of the patch. Directions
+/// 10 degrees from its axis stand in place of the patches around. Trees of up to 7 halvings are summed exactly.
 LightShares light_shares(const TensorTree& tree, Vec3 wi) noexcept;
 
 }  // namespace burnish

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kSamplerTextureNumber = 9;
 
-// C++ has three numbers alone in its header.
+// The header of C++ has no vectors but those of three numbers.
 constexpr std::string_view kCppVectors = R"(#ifndef BURNISH_SAMPLE_TYPES
 #define BURNISH_SAMPLE_TYPES
 namespace burnish_shader {

@@ -105,7 +105,7 @@ inline auto biquadratic(double x, double y) noexcept {
     return total;
   };
 }
-/// The same; what y makes of the weights are numbers.
+/// Returns the same for a number y, whose terms are computed at once.
 inline auto biquadratic(const Expr& x, double y) {
   return [x, y](const double(&w)[9]) {
     const auto of_y = [y](double a, double b, double c) { return a + b * y + c * y * y; };
@@ -240,7 +240,7 @@ T fujii_albedo(const T& cosine, double roughness) {
   return (1 + roughness * g / kPi) / (1 + kFujii1 * roughness);
 }
 
-/// Returns the rest that an albedo leaves of 1.
+/// Returns 1 - albedo, at least kEpsilon.
 template <class T>
 T lost(const T& albedo) {
   return max(T(kEpsilon), 1 - albedo);
