@@ -211,16 +211,17 @@ void bind_eval(nb::module_& m) {
            nb::sig("def eval(self, wi: numpy.typing.ArrayLike, wo: numpy.typing.ArrayLike, "
                    "out: NDArray | None = None) -> NDArray"));
   nb::borrow<nb::class_<OpenedModel>>(m.attr("Model"))
-      .def("table_gradient", &table_gradient, nb::arg("wi"), nb::arg("wo"), nb::arg("weights"),
-           nb::sig("def table_gradient(self, wi: numpy.typing.ArrayLike, wo: numpy.typing.ArrayLike, "
-                   "weights: numpy.typing.ArrayLike) -> list[NDArray[numpy.float64]]"),
-           "Returns the derivatives of sum(weights * eval(wi, wo)) by each value of each table. There is one\n"
-           "float64 array for each table, in the shape of its values.\n"
-           "\n"
-           "weights: (N, channels) or (channels,).\n"
-           "Multiplied by Table.values, the derivatives are those by the natural logarithms that\n"
-           "with_log_tables takes. Pairs whose wi or wo is no unit vector to 1 % add nothing.\n"
-           "The call uses one thread. Other Python threads run meanwhile.");
+      .def(
+          "table_gradient", &table_gradient, nb::arg("wi"), nb::arg("wo"), nb::arg("weights"),
+          nb::sig("def table_gradient(self, wi: numpy.typing.ArrayLike, wo: numpy.typing.ArrayLike, "
+                  "weights: numpy.typing.ArrayLike) -> list[NDArray[numpy.float64]]"),
+          "Returns the derivatives of sum(weights * eval(wi, wo)) by each value of each table. There is one\n"
+          "float64 array for each table, in the shape of its values.\n"
+          "\n"
+          "weights: (N, channels) or (channels,).\n"
+          "Multiplied by Table.values, the derivatives are those by the natural logarithms that\n"
+          "with_log_tables takes. Pairs whose wi or wo is no unit vector to 1 % add nothing.\n"
+          "The call uses one thread. Other Python threads run meanwhile.");
   m.def("_time_eval", &time_eval, nb::arg("model"), nb::arg("wi").noconvert(), nb::arg("wo").noconvert(),
         nb::arg("out"), nb::arg("repeats"));
 }

@@ -230,10 +230,8 @@ bool takes_surfaces(ExportTarget target) noexcept {
 }
 
 ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& options) {
-  if (options.environment)
-    throw Error("environment: expected a model with it, found a surface");
-  if (options.half)
-    throw Error("export: expected a model with half products, found a surface");
+  if (options.environment) throw Error("environment: expected a model with it, found a surface");
+  if (options.half) throw Error("export: expected a model with half products, found a surface");
   if (options.sample)
     throw Error("export: expected a model with functions that draw directions, found a surface");
   if (options.blocks && std::ranges::none_of(options.to, has_map_textures))
