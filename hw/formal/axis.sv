@@ -1,5 +1,6 @@
-// The exact unit between AXI4-Streams, any pauses on both sides: only c = 0 and c = 1 are offered. The answer to any one
-// question, chosen by its number, is its own and comes with its own tlast and tuser. An answer that waits stays as it is.
+// The exact unit between AXI4-Streams, any pauses on both sides: only c = 0 and c = 1 are offered. The answer to any
+// one question, chosen by its number, is its own and comes with its own tlast and tuser. An answer that waits stays as
+// it is.
 module axis #(
   parameter int         Depth    = 3,
   parameter logic [9:0] Exponent = 10'd1023

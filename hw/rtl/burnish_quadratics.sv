@@ -1,5 +1,5 @@
-// c^exponent as 2^-(exponent u), u = -log2 c, as special function units of graphics processors form it: the logarithm of
-// the normalized c and the power of two are 64 quadratics each. A rival to measure burnish_exact beside.
+// c^exponent as 2^-(exponent u), u = -log2 c, as special function units of graphics processors form it: the logarithm
+// of the normalized c and the power of two are 64 quadratics each. A rival to measure burnish_exact beside.
 //   exponent_i  U10.0, 1 to 1023
 //   input_i     Q1.CosineBits in [0, 1]: c, or with Versine v = 1 - c; CosineBits from OutBits + 2 to OutBits + 12
 //   value_o     c^exponent (2^OutBits - 1): full at c = 1, 0 at c = 0; it may fall by one as c rises

@@ -1,5 +1,5 @@
-// A register slice with room for two words, so that ready_o is a register: no path leads from ready_i to ready_o or from
-// valid_i to valid_o. One word a clock; latency 1 clock without back-pressure. rst_ni empties it, asynchronously.
+// A register slice with room for two words, so that ready_o is a register: no path leads from ready_i to ready_o or
+// from valid_i to valid_o. One word a clock; latency 1 clock without back-pressure. rst_ni empties it, asynchronously.
 module burnish_skid #(
   parameter int Width = 8
 ) (

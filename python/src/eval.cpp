@@ -129,8 +129,8 @@ nb::object eval_any(const OpenedBrdf& brdf, nb::handle wi, nb::handle wo, const 
              : eval<double>(brdf, array_of<double>(wi, "wi"), array_of<double>(wo, "wo"), out);
 }
 
-// Sums the gradients of all pairs by each value of each table, one array a table. The sum has one order, and so the same
-// bits each time.
+// Sums the gradients of all pairs by each value of each table, one array a table. The sum has one order, and so the
+// same bits each time.
 nb::list table_gradient(const OpenedModel& model, nb::handle wi_given, nb::handle wo_given,
                         nb::handle weights_given) {
   const FactoredBrdf& brdf = model.brdf();

@@ -35,9 +35,9 @@ struct ExportOptions {
 /// Throws Error for places that no target has, and for places with an environment.
 void check_places_shown(const ExportOptions& options);
 
-/// Writes a factored BRDF as every target of `to`, each once. All shaders but C++ bring their textures along. The target
-/// gltf has the nearest material of glTF, and usda the nearest OpenPBR and core material, which take seconds to find.
-/// Throws Error as generate_shader does, and for:
+/// Writes a factored BRDF as every target of `to`, each once. All shaders but C++ bring their textures along. The
+/// target gltf has the nearest material of glTF, and usda the nearest OpenPBR and core material, which take seconds to
+/// find. Throws Error as generate_shader does, and for:
 /// - an environment that no target shows;
 /// - area lights without a language that has textures, and `sample` without a language;
 /// - half without a language that has it, or with `exact`;

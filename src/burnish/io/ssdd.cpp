@@ -400,7 +400,8 @@ FunctionBrdf function_of_ssdd(SsddFunction function) {
           }};
 }
 
-/// Returns the stated shares of a specular block at its first azimuth: of a colour the luminance, of a spectrum the mean.
+/// Returns the stated shares of a specular block at its first azimuth: of a colour the luminance, of a spectrum the
+/// mean.
 std::vector<DirectShare> direct_shares(const SsddBlock& block) {
   std::vector<DirectShare> shares;
   const std::size_t channels = block.channels();

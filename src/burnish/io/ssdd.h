@@ -29,9 +29,9 @@ bool looks_like_ssdd(std::string_view text) noexcept;
 /// anisotropic data are functions, linear between nodes and constant beyond the first and the last. Offset angles turn
 /// the mirror direction, or straight on. Directions of a BTDF are mirrored through the surface.
 ///
-/// The file does not say which primaries its RGB has: they are taken as linear Rec. 709. XYZ becomes linear Rec. 709 for
-/// a D65 white, as libbsdf shows it. So do spectra, under the options' illuminant, unless options.keep_spectral. The
-/// reader takes memory in proportion to the file. Throws Error on anything else. Source: [Kimura 2026].
+/// The file does not say which primaries its RGB has: they are taken as linear Rec. 709. XYZ becomes linear Rec. 709
+/// for a D65 white, as libbsdf shows it. So do spectra, under the options' illuminant, unless options.keep_spectral.
+/// The reader takes memory in proportion to the file. Throws Error on anything else. Source: [Kimura 2026].
 SsddFile parse_ssdd(const FileBytes& file, const OpenOptions& options);
 
 }  // namespace burnish

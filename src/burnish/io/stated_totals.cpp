@@ -33,8 +33,8 @@ std::vector<double> integrals(const AngleTable& table, std::size_t azimuth, std:
   return directional_albedo(table, wi, accuracy).albedo;
 }
 
-/// Scales each of `lanes` groups of channels (one group, or each channel apart) at each incidence. `name` is that of the
-/// totals in the file.
+/// Scales each of `lanes` groups of channels (one group, or each channel apart) at each incidence. `name` is that of
+/// the totals in the file.
 void scale_lanes(AngleTable& table, std::span<const double> stated, std::size_t lanes, std::string_view name,
                  Findings& findings) {
   const std::size_t incidences = table.axes[1].nodes.size(), channels = table.channel_count;

@@ -16,8 +16,8 @@ namespace burnish {
 /// its terms see the first, the first two, and all three. Coordinates of an anisotropic one are even in the exchange:
 ///   the half vector at radius sqrt(tan(theta_h/2)), the difference vector at radius tan(theta_d/2) and twice its
 ///   azimuth; its terms see the half vector, the difference vector, and both.
-/// Near the horizon BRDFs rise by a power of the cosines, and instruments stop before the horizon. The grazing term lets
-/// the exponent vary slowly from place to place. So a rise that was measured goes on beyond the last measurement:
+/// Near the horizon BRDFs rise by a power of the cosines, and instruments stop before the horizon. The grazing term
+/// lets the exponent vary slowly from place to place. So a rise that was measured goes on beyond the last measurement:
 ///   grazing^2 g(a) g(b) m(|a - b|_grazing),   g(a) the grazing measure of the directions at a.
 /// Sources: [Rasmussen 2006, eq. 4.17] for m; the grazing term is the basis function g of eq. 2.39 with a coefficient
 /// that has the covariance grazing^2 m.
@@ -52,8 +52,8 @@ struct LogCovariance {
   friend bool operator==(const LogCovariance&, const LogCovariance&) = default;
 };
 
-/// Returns the grazing measure of directions above the horizon: the sum over both of ln(0.2 / cos), 0 for a cosine above
-/// 0.2. A cosine below 0.005 counts as 0.005, so values stay bounded at the horizon.
+/// Returns the grazing measure of directions above the horizon: the sum over both of ln(0.2 / cos), 0 for a cosine
+/// above 0.2. A cosine below 0.005 counts as 0.005, so values stay bounded at the horizon.
 double grazing_measure(Vec3 wi, Vec3 wo) noexcept;
 
 }  // namespace burnish

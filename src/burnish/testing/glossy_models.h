@@ -34,8 +34,8 @@ inline const ModelCase& glossy_case(std::string_view name) {
   return *std::ranges::find(kGlossyModels, name, &ModelCase::name);
 }
 
-/// Returns a model with a highlight in every table of h, longer along one axis if the table is a disk. Other tables have
-/// slopes.
+/// Returns a model with a highlight in every table of h, longer along one axis if the table is a disk. Other tables
+/// have slopes.
 inline FactoredBrdf glossy_model(const ModelCase& model) {
   const ModelSpec spec = parse_model_spec(model.expression, model.options, true);
   std::vector<Table> tables;

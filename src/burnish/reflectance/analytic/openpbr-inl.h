@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The formulas of OpenPbr for a number type T: double, the definition, or Expr. Two files instantiate them, one each, so
-// that expression graphs, which run once a material, are compiled apart from evaluation.
+// The formulas of OpenPbr for a number type T: double, the definition, or Expr. Two files instantiate them, one each,
+// so that expression graphs, which run once a material, are compiled apart from evaluation.
 
 #include <algorithm>
 #include <array>
