@@ -91,8 +91,8 @@ DEVICE vec3 light_along(vec3 from, vec3 d, Random& random) {
   return sum + (both ? seen * pdf / (pdf + sun_pdf) : seen) * weight;
 }
 
-// Pixel i of the picture, or the light of an even sky of radiance 1 that is reflected along the normal where i is the
-// number of pixels.
+// Computes pixel i of the picture. If i is the number of pixels, it computes the light of an even sky of radiance 1
+// that the material reflects along the normal.
 DEVICE vec3 pixel(int i, int paths) {
   Random random{9781u * static_cast<unsigned>(i) + 1u};
   vec3 sum(0.0f, 0.0f, 0.0f);
